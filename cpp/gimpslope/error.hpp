@@ -1,0 +1,30 @@
+// What the kernel throws: std::invalid_argument for refused parameters, Diverged for a failed run.
+#pragma once
+
+#include <cstdint>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace gimpslope {
+
+/// A run whose state is no longer finite, or whose points move faster than the grid can follow.
+struct Diverged : std::runtime_error {
+  Diverged(const std::string& message, std::int64_t step, double time, std::int64_t point)
+      : std::runtime_error(message), step(step), time(time), point(point) {}
+  std::int64_t step;
+  double time;
+  std::int64_t point;
+};
+
+/// Refuses a parameter: names it, its value and what is allowed.
+template <class Value>
+void require(bool allowed, const char* parameter, const Value& value, const char* rule) {
+  if (allowed) return;
+  std::ostringstream message;
+  message.precision(12);
+  message << parameter << " = " << value << ": must be " << rule;
+  throw std::invalid_argument(message.str());
+}
+
+}  // namespace gimpslope

@@ -1,0 +1,88 @@
+#include "grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "error.hpp"
+
+namespace gimpslope {
+namespace {
+
+constexpr const char* kSideNames[] = {"left wall", "right wall", "bottom wall", "top wall"};
+
+}  // namespace
+
+Grid::Grid(double cell, double x, double y, const std::array<Wall, 4>& walls)
+    : cell_(cell), x_(x), y_(y), walls_(walls) {
+  require(std::isfinite(cell) && cell > 0.0, "cell", cell, "positive and finite (m)");
+  require(std::isfinite(x) && std::isfinite(y), "origin", x, "finite (m)");
+  for (const Side side : {left, right, bottom, top}) {
+    const Wall& wall = walls[side];
+    const bool low = side == left || side == bottom;
+    if (wall.kind == WallKind::free) {
+      wall_node_[side] = low ? std::numeric_limits<std::int32_t>::min() / 2
+                             : std::numeric_limits<std::int32_t>::max() / 2;
+      continue;
+    }
+    require(wall.friction >= 0.0 && std::isfinite(wall.friction), "friction", wall.friction,
+            "zero or positive and finite at a wall");
+    const double line = (wall.position - (side == left || side == right ? x : y)) / cell;
+    require(std::isfinite(line) && std::abs(line - std::round(line)) < 1e-6, kSideNames[side],
+            wall.position, "on a grid line: a whole number of cells from the origin (m)");
+    wall_node_[side] = static_cast<std::int32_t>(std::lround(line));
+  }
+}
+
+void Grid::fit(Cell low, Cell high) {
+  const std::int64_t columns = std::int64_t{high.column} - low.column + 1;
+  const std::int64_t rows = std::int64_t{high.row} - low.row + 1;
+  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 4;
+  require(columns * rows <= most, "nodes", columns * rows,
+          "fewer than 2^29: the points are spread too far apart for this cell size");
+  low_ = low;
+  columns_ = static_cast<int>(columns);
+  rows_ = static_cast<int>(rows);
+  active_.assign(rows, {columns_, 0});
+  for (Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_})
+    field->assign(4 * columns * rows, 0.0);
+}
+
+void Grid::activate(int row, NodeRange columns) {
+  active_[row].begin = std::min(active_[row].begin, columns.begin);
+  active_[row].end = std::max(active_[row].end, columns.end);
+}
+
+void Grid::clear() { std::fill(momentum_.begin(), momentum_.end(), 0.0); }
+
+GridView Grid::view() {
+  GridView view{cell_,
+                x_ + low_.column * cell_,
+                y_ + low_.row * cell_,
+                columns_,
+                rows_,
+                active_.data(),
+                momentum_.data(),
+                velocity_.data(),
+                force_.data(),
+                update_.data(),
+                {},
+                {},
+                {}};
+  for (const Side side : {left, right, bottom, top}) {
+    const int base = side == left || side == right ? low_.column : low_.row;
+    view.kind[side] = walls_[side].kind;
+    view.friction[side] = walls_[side].friction;
+    view.wall[side] = wall_node_[side] - base;
+  }
+  return view;
+}
+
+std::int64_t Grid::bytes() const {
+  std::int64_t total = active_.capacity() * sizeof(NodeRange);
+  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_})
+    total += sizeof(double) * field->capacity();
+  return total;
+}
+
+}  // namespace gimpslope

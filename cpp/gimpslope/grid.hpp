@@ -1,0 +1,51 @@
+// The background grid: a window of nodes that follows the mass, so that no point can leave it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "buffer.hpp"
+#include "view.hpp"
+#include "wall.hpp"
+
+namespace gimpslope {
+
+/// Cells from the anchor of the grid, which may be negative.
+struct Cell {
+  std::int32_t column, row;
+};
+
+class Grid {
+ public:
+  /// Grid lines run through (x, y); walls lie on grid lines.
+  Grid(double cell, double x, double y, const std::array<Wall, 4>& walls);
+
+  double cell() const { return cell_; }
+  double x() const { return x_; }
+  double y() const { return y_; }
+
+  /// Makes the window hold the nodes from `low` to `high`, both included, and clears it.
+  void fit(Cell low, Cell high);
+
+  /// Declares the nodes `columns` of the window's `row` active, beside those that are already.
+  void activate(int row, NodeRange columns);
+
+  void clear();
+  Cell low() const { return low_; }
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  GridView view();
+  std::int64_t bytes() const;
+
+ private:
+  double cell_, x_, y_;
+  std::array<Wall, 4> walls_;
+  std::array<std::int32_t, 4> wall_node_;  // from the anchor
+  Cell low_{0, 0};
+  int columns_ = 0, rows_ = 0;
+  std::vector<NodeRange> active_;
+  Buffer<double> momentum_, velocity_, force_, update_;
+};
+
+}  // namespace gimpslope

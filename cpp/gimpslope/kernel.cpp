@@ -1,0 +1,44 @@
+// Compiled once for each instruction set: see CMakeLists.txt. Nothing outside this file may be
+// compiled with instructions that the processor might lack.
+#include "kernel.hpp"
+
+#include "scheme/usf.hpp"
+#include "shape/gimp.hpp"
+#include "shape/linear.hpp"
+#include "sweep/speeds.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+namespace {
+
+template <template <class, bool> class Scheme>
+Kernel with_basis(Basis basis) {
+  const auto of = []<class Combination>(Combination) -> Kernel {
+    return {&Combination::prepare, &Combination::step, &measure_speeds};
+  };
+  switch (basis) {
+    case Basis::linear:
+      return of(Scheme<Linear, false>{});
+    case Basis::gimp_common:
+      return of(Scheme<Gimp, false>{});
+    case Basis::gimp_own:
+      return of(Scheme<Gimp, true>{});
+    case Basis::gimp_wide:
+      break;
+  }
+  return of(Scheme<WideGimp, true>{});
+}
+
+}  // namespace
+
+/// The list of combinations that are built.
+Kernel kernel(SchemeKind scheme, Basis basis) {
+  switch (scheme) {
+    case SchemeKind::usf:
+      break;
+  }
+  return with_basis<Usf>(basis);
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

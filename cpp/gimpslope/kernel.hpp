@@ -1,0 +1,28 @@
+// The compiled combinations of scheme, shape function and domain, for each instruction set.
+#pragma once
+
+#include "instruction_set.hpp"
+#include "view.hpp"
+
+namespace gimpslope {
+
+/// One combination. `prepare` brings mass and momentum of the points to cleared nodes; `step` takes
+/// one step from there and leaves the nodes prepared for the next. `reports` and `speeds` have one
+/// entry a slab.
+struct Kernel {
+  void (*prepare)(const View& view);
+  void (*step)(const View& view, const StepInput& input, Report* reports);
+  void (*measure_speeds)(const View& view, Speeds* speeds);
+};
+
+/// Shape functions as compiled: GIMP with one half-length for all points or one for each, and with
+/// domains wider than a cell.
+enum class Basis { linear, gimp_common, gimp_own, gimp_wide };
+
+/// Nodes a direction that a point reaches, and the widest domain allowed, in cells.
+int reach(Basis basis);
+double widest(Basis basis);
+
+Kernel find_kernel(InstructionSet set, SchemeKind scheme, Basis basis);
+
+}  // namespace gimpslope

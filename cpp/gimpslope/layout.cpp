@@ -1,0 +1,88 @@
+#include "layout.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "error.hpp"
+
+namespace gimpslope {
+namespace {
+
+/// The cell of each point's first node: that of the left lower corner of its domain.
+std::vector<Cell> first_cells(const Points& points, const Grid& grid, double half_length) {
+  std::vector<Cell> cells(points.size);
+  const bool own = !points.half_length.empty();
+  for (int k = 0; k < points.size; ++k) {
+    const double lx = own ? points.half_length[2 * k] : half_length;
+    const double ly = own ? points.half_length[2 * k + 1] : half_length;
+    const double column = std::floor((points.motion[4 * k] - lx - grid.x()) / grid.cell());
+    const double row = std::floor((points.motion[4 * k + 1] - ly - grid.y()) / grid.cell());
+    constexpr double farthest = 1e9;
+    require(std::abs(column) < farthest && std::abs(row) < farthest, "position",
+            points.motion[4 * k], "finite and within 1e9 cells of the origin");
+    cells[k] = {static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)};
+  }
+  return cells;
+}
+
+/// Stable counting sort of `order` by key(point), which lies in [0, keys).
+template <class Key>
+void sort_by(std::vector<std::int32_t>& order, int keys, Key key) {
+  std::vector<std::int32_t> place(keys + 1, 0), sorted(order.size());
+  for (const std::int32_t point : order) ++place[key(point) + 1];
+  std::partial_sum(place.begin(), place.end(), place.begin());
+  for (const std::int32_t point : order) sorted[place[key(point)]++] = point;
+  order.swap(sorted);
+}
+
+}  // namespace
+
+Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials) {
+  std::vector<Cell> cells = first_cells(points, grid, half_length);
+  Cell low = cells.front(), high = cells.front();
+  for (const Cell& cell : cells) {
+    low = {std::min(low.column, cell.column), std::min(low.row, cell.row)};
+    high = {std::max(high.column, cell.column), std::max(high.row, cell.row)};
+  }
+
+  std::vector<std::int32_t> order(points.size);
+  std::iota(order.begin(), order.end(), 0);
+  const auto row = [&](std::int32_t point) {
+    return cells[point].row - low.row;
+  };
+  sort_by(order, high.column - low.column + 1,
+          [&](std::int32_t point) { return cells[point].column - low.column; });
+  sort_by(order, (high.row - low.row + 1) * materials,
+          [&](std::int32_t point) { return row(point) * materials + points.material[point]; });
+
+  constexpr int margin = 1;
+  grid.fit({low.column - margin, low.row - margin},
+           {high.column + reach - 1 + margin, high.row + reach - 1 + margin});
+
+  Layout layout;
+  for (int k = 0; k < points.size; ++k) {
+    const std::int32_t point = order[k];
+    const int slab = row(point) / kSlabRows;
+    const std::int32_t material = points.material[point];
+    const bool new_slab = k == 0 || slab != row(order[k - 1]) / kSlabRows;
+    if (new_slab || layout.blocks.back().material != material ||
+        k - layout.blocks.back().begin == kBlock) {
+      if (new_slab) {
+        const auto block = static_cast<std::int32_t>(layout.blocks.size());
+        layout.slabs.resize(slab + 1, {block, block});
+      }
+      layout.blocks.push_back({k, k, material});
+    }
+    layout.blocks.back().end = k + 1;
+    layout.slabs.back().end = static_cast<std::int32_t>(layout.blocks.size());
+
+    const int column = cells[point].column - low.column;  // of the first node, less the margin
+    for (int j = 0; j < reach + 2 * margin; ++j)
+      grid.activate(row(point) + j, {column, column + reach + 2 * margin});
+  }
+  points.reorder(order);
+  return layout;
+}
+
+}  // namespace gimpslope

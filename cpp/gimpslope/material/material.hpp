@@ -1,0 +1,56 @@
+// A material as an engineer gives it, and the constants of its law.
+#pragma once
+
+#include <limits>
+
+#include "drucker_prager.hpp"
+#include "elastic.hpp"
+
+namespace gimpslope {
+
+enum class LawKind { elastic, drucker_prager };
+
+/// The Drucker-Prager cones that go by one friction angle: through the outer or inner corners of
+/// the Mohr-Coulomb pyramid, or giving its collapse load in plane strain, with associated flow or
+/// with the dilation angle of the material.
+enum class Cone { outer, inner, plane_strain_associated, plane_strain };
+
+struct Material {
+  double density;  // kg/m3, at the start
+  double young;    // Pa
+  double poisson;
+  LawKind law = LawKind::elastic;
+  double friction = 0.0;  // degrees
+  double cohesion = 0.0;  // Pa
+  double dilation = 0.0;  // degrees
+  Cone cone = Cone::plane_strain_associated;
+  double tension_cutoff = std::numeric_limits<double>::infinity();  // Pa, of the mean stress
+
+  double bulk_modulus() const;   // Pa
+  double shear_modulus() const;  // Pa
+  double wave_modulus() const;   // Pa; of uniaxial strain, K + 4G/3
+
+  /// Refuses values out of range with std::invalid_argument.
+  void check() const;
+};
+
+/// sqrt(J2) + friction p = cohesion c; plastic flow dilates by `dilation` times its multiplier.
+struct ConeCoefficients {
+  double friction, cohesion, dilation;
+};
+
+ConeCoefficients cone_coefficients(const Material& material);
+
+/// Largest mean stress the material can carry, Pa: the cut-off, or the apex of the cone c cot(phi).
+double tension_limit(const Material& material);
+
+/// What the sweeps need of a material.
+struct Law {
+  LawKind kind;
+  double wave_modulus;
+  DruckerPrager drucker_prager;  // of an elastic material, its elastic part alone
+};
+
+Law law(const Material& material);
+
+}  // namespace gimpslope

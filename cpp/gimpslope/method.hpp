@@ -1,0 +1,73 @@
+// How a scene is stepped: shape function, scheme, velocity blend, time step, loading.
+#pragma once
+
+namespace gimpslope {
+
+enum class ShapeKind { linear, ugimp, cpgimp };
+enum class SchemeKind { usf };
+
+/// How the half-lengths of a cpGIMP domain follow the deformation.
+enum class DomainUpdate { none, jacobian, stretch, deformation_diagonal };
+
+/// V *= 1 + tr(d) dt (paper eq. 23), or V *= exp(tr(d) dt).
+enum class VolumeUpdate { linear, exponential };
+
+/// Share of PIC in the velocity update (paper eq. 26: 0 is FLIP, 1 is PIC), given a step, as a
+/// kinematic viscosity in m2/s, or as a relaxation time in s. The last two do not depend on the
+/// step.
+struct Blend {
+  enum class Kind { alpha, viscosity, relaxation_time };
+  Kind kind = Kind::alpha;
+  double value = 0.0;
+
+  /// Projecting a velocity field onto the grid and back damps it as a viscosity of
+  /// alpha h^2 (1/6 + l^2/(3 h^2)) / dt does, l being the half-length of a point's domain:
+  /// second moment of the hat function averaged over the domain.
+  double alpha(double dt, double cell, double half_length) const {
+    switch (kind) {
+      case Kind::viscosity:
+        return value * dt / (cell * cell / 6.0 + half_length * half_length / 3.0);
+      case Kind::relaxation_time:
+        return dt / value;
+      case Kind::alpha:
+        break;
+    }
+    return value;
+  }
+};
+
+/// A fixed step in s, or the Courant number C of dt = C h / (c + |v|).
+struct TimeStep {
+  enum class Kind { fixed, courant };
+  Kind kind = Kind::courant;
+  double value = 0.4;
+};
+
+/// Acceleration in m/s2 that grows linearly over `ramp` seconds; 0 applies it at once.
+struct Gravity {
+  double x = 0.0;
+  double y = 0.0;
+  double ramp = 0.0;
+
+  double factor(double time) const { return time < ramp ? time / ramp : 1.0; }
+};
+
+/// Local: force opposed to each node's velocity, in parts of its unbalanced force (Cundall).
+/// Kinetic: all velocities are set to zero whenever the kinetic energy has passed a peak.
+struct Damping {
+  double local = 0.0;
+  bool kinetic = false;
+};
+
+struct Method {
+  ShapeKind shape = ShapeKind::ugimp;
+  SchemeKind scheme = SchemeKind::usf;
+  DomainUpdate domain_update = DomainUpdate::none;
+  VolumeUpdate volume_update = VolumeUpdate::linear;
+  Blend blend;
+  TimeStep time_step;
+  int threads = 1;
+  bool allow_unstable = false;
+};
+
+}  // namespace gimpslope

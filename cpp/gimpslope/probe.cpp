@@ -1,0 +1,74 @@
+#include "probe.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "error.hpp"
+#include "shape/gimp.hpp"
+#include "shape/linear.hpp"
+
+namespace gimpslope {
+namespace {
+
+template <class Shape>
+ShapeValues evaluate_all(std::span<const double> position, std::span<const double> half_length,
+                         double cell, std::array<double, 2> origin) {
+  constexpr int nodes = Shape::nodes;
+  ShapeValues result{nodes * nodes, {}, {}, {}};
+  for (std::size_t k = 0; k < position.size(); k += 2) {
+    std::int64_t first[2];
+    double w[2][nodes], d[2][nodes];
+    for (int axis = 0; axis < 2; ++axis) {
+      const double width = Shape::extended ? 2.0 * half_length[k + axis] / cell : 0.0;
+      const double edge = (position[k + axis] - origin[axis]) / cell - 0.5 * width;
+      first[axis] = static_cast<std::int64_t>(std::floor(edge));
+      Shape::evaluate(edge - static_cast<double>(first[axis]), width, 1.0 / width, w[axis],
+                      d[axis]);
+    }
+    for (int j = 0; j < nodes; ++j) {
+      for (int i = 0; i < nodes; ++i) {
+        result.index.insert(result.index.end(), {first[0] + i, first[1] + j});
+        result.value.push_back(w[0][i] * w[1][j]);
+        result.gradient.insert(result.gradient.end(),
+                               {d[0][i] * w[1][j] / cell, w[0][i] * d[1][j] / cell});
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+ShapeValues shape_functions(ShapeKind kind, std::span<const double> position,
+                            std::span<const double> half_length, double cell,
+                            std::array<double, 2> origin) {
+  require(cell > 0.0 && std::isfinite(cell), "cell", cell, "positive and finite (m)");
+  for (const double x : position) require(std::isfinite(x), "position", x, "finite (m)");
+  if (kind == ShapeKind::linear) return evaluate_all<Linear>(position, half_length, cell, origin);
+  double widest = 0.0;
+  for (const double l : half_length) {
+    require(l > 0.0 && 2.0 * l / cell <= WideGimp::widest, "half_length", l,
+            "positive and at most 1.5 cells (m)");
+    widest = std::max(widest, 2.0 * l / cell);
+  }
+  return widest <= Gimp::widest ? evaluate_all<Gimp>(position, half_length, cell, origin)
+                                : evaluate_all<WideGimp>(position, half_length, cell, origin);
+}
+
+void return_mapping(const Material& material, std::span<double> stress,
+                    std::span<double> plastic_strain) {
+  require(material.law == LawKind::drucker_prager, "material", "elastic",
+          "of the law drucker_prager");
+  const DruckerPrager constants = law(material).drucker_prager;
+  for (std::size_t k = 0; k < plastic_strain.size(); ++k) {
+    double* s = stress.data() + 4 * k;
+    Stress point{s[0], s[1], s[2], s[3]};
+    return_to_surface(constants, point, plastic_strain[k]);
+    s[0] = point.xx;
+    s[1] = point.yy;
+    s[2] = point.zz;
+    s[3] = point.xy;
+  }
+}
+
+}  // namespace gimpslope

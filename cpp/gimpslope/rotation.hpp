@@ -1,0 +1,49 @@
+// The exact rotation of a plane stress state by the angle that a step turns a point.
+#pragma once
+
+#include <cmath>
+
+#include "instruction_set.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Largest angle, rad, at which the series below are exact to rounding.
+constexpr double kSmallAngle = 0.5;
+
+/// Cosine and sine by their Taylor series: free of branches, so that loops over points vectorise.
+inline void small_rotation(double angle, double& cosine, double& sine) {
+  const double a = angle * angle;
+  cosine =
+      1.0 +
+      a * (-1.0 / 2 +
+           a * (1.0 / 24 +
+                a * (-1.0 / 720 +
+                     a * (1.0 / 40320 + a * (-1.0 / 3628800 +
+                                             a * (1.0 / 479001600 + a * (-1.0 / 87178291200)))))));
+  sine =
+      angle *
+      (1.0 + a * (-1.0 / 6 +
+                  a * (1.0 / 120 +
+                       a * (-1.0 / 5040 +
+                            a * (1.0 / 362880 + a * (-1.0 / 39916800 + a * (1.0 / 6227020800)))))));
+}
+
+/// Cosine and sine of n angles. A stable step turns a point by far less than kSmallAngle; a block
+/// that holds a larger angle, or one that is not finite, takes the library's functions.
+inline void rotation(int n, const double* angle, double* cosine, double* sine) {
+  double largest = 0.0;
+  for (int k = 0; k < n; ++k) {
+    small_rotation(angle[k], cosine[k], sine[k]);
+    const double size = std::abs(angle[k]);
+    largest = size > largest ? size : largest;
+  }
+  if (largest <= kSmallAngle) return;
+  for (int k = 0; k < n; ++k) {
+    cosine[k] = std::cos(angle[k]);
+    sine[k] = std::sin(angle[k]);
+  }
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

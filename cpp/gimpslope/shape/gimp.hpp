@@ -1,0 +1,59 @@
+// Generalized interpolation (paper eq. 14-16; Bardenhagen and Kober 2004): the hat function
+// averaged over the domain [x - l, x + l] of a point. With the initial l it is uGIMP, with a
+// current l cpGIMP.
+#pragma once
+
+#include <cmath>
+
+#include "../instruction_set.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Domains up to one cell wide, which reach three nodes.
+struct Gimp {
+  static constexpr int nodes = 3;
+  static constexpr bool extended = true;
+  static constexpr double widest = 1.0;
+
+  /// Values w and derivatives d (times the cell size); `xi` cells from the first node to the left
+  /// edge of the domain, which is `width` = 2 l / h cells wide, `inverse` = 1 / width. Free of
+  /// branches: t is how far the domain reaches into the second cell.
+  static void evaluate(double xi, double width, double inverse, double (&w)[nodes],
+                       double (&d)[nodes]) {
+    const double reach = xi - (1.0 - width);
+    const double t = reach > 0.0 ? reach : 0.0;
+    d[2] = t * inverse;
+    w[2] = 0.5 * t * d[2];
+    w[0] = 1.0 - 0.5 * width - xi + w[2];
+    w[1] = 1.0 - w[0] - w[2];
+    d[0] = d[2] - 1.0;
+    d[1] = -(d[0] + d[2]);
+  }
+};
+
+/// Domains up to three cells wide, which reach five nodes: a cpGIMP domain after strong extension.
+struct WideGimp {
+  static constexpr int nodes = 5;
+  static constexpr bool extended = true;
+  static constexpr double widest = 3.0;
+
+  static void evaluate(double xi, double width, double inverse, double (&w)[nodes],
+                       double (&d)[nodes]) {
+    for (int i = 0; i < nodes; ++i) {
+      w[i] = (area(xi + width - i) - area(xi - i)) * inverse;
+      d[i] = (hat(xi + width - i) - hat(xi - i)) * inverse;
+    }
+  }
+
+ private:
+  static double hat(double s) { return std::abs(s) < 1.0 ? 1.0 - std::abs(s) : 0.0; }
+  /// Integral of the hat function up to s.
+  static double area(double s) {
+    const double c = s < -1.0 ? -1.0 : (s > 1.0 ? 1.0 : s);
+    return 0.5 + c - 0.5 * c * std::abs(c);
+  }
+};
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

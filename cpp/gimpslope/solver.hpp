@@ -1,0 +1,124 @@
+// The state of a scene and its stepping: the one type the outside sees of the kernel, besides
+// parameters.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "grid.hpp"
+#include "kernel.hpp"
+#include "layout.hpp"
+#include "material/material.hpp"
+#include "method.hpp"
+#include "points.hpp"
+#include "wall.hpp"
+
+namespace gimpslope {
+
+/// The points as they are given: vectors {x, y} one after the other, in SI units.
+struct InitialPoints {
+  std::span<const double> position, velocity, half_length;
+  std::span<const double> mass, volume;
+  std::span<const std::int32_t> material;
+};
+
+/// Energies in J per metre of thickness; the potential is zero at the origin of the coordinates.
+struct Energies {
+  double kinetic, potential, elastic;
+  double max_speed;  // m/s
+};
+
+/// A property of the points in storage order: component c of point k is at
+/// data[k * point_stride + c * component_stride].
+struct FieldView {
+  double* data;
+  std::ptrdiff_t point_stride, component_stride;
+  int components;
+};
+
+class Solver {
+ public:
+  Solver(const InitialPoints& points, std::vector<Material> materials, double cell,
+         std::array<double, 2> origin, const std::array<Wall, 4>& walls, const Method& method,
+         InstructionSet instruction_set);
+
+  /// Takes `steps` steps; throws Diverged.
+  void advance(std::int64_t steps);
+
+  /// Steps until `time`, at most `most` steps; with a Courant number the last two are shortened to
+  /// end there. True when the time is reached.
+  bool advance_to(double time, std::int64_t most);
+
+  void set_gravity(const Gravity& gravity);
+  void set_damping(const Damping& damping);
+  void set_time_step(const TimeStep& step);
+  void set_materials(std::vector<Material> materials);
+
+  /// Returns all stresses to the yield surfaces; gives the elastic energy released, J/m.
+  double release_stress();
+
+  /// Time and steps start anew at zero, and so does the plastic strain.
+  void reset_clock();
+
+  Energies energies() const;
+
+  /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,
+  /// half_length, and deformation_gradient (xx, xy, yx, yy) where the method keeps it.
+  FieldView field(const std::string& name);
+  std::vector<double> values(const std::string& name);  // in the order the points were given
+  void set_values(const std::string& name, std::span<const double> values);
+  std::vector<std::int32_t> material_of_points() const;
+  std::span<const std::int32_t> numbers() const { return points_.number; }
+
+  double time() const { return time_; }
+  std::int64_t steps() const { return steps_; }
+  int size() const { return points_.size; }
+  double cell() const { return grid_.cell(); }
+  int threads() const { return method_.threads; }
+  InstructionSet instruction_set() const { return instruction_set_; }
+  double time_step();                               // the next one, s
+  double stable_time_step() const;                  // the largest stable one at present, s
+  double courant_limit() const;                     // the same as a Courant number
+  double alpha() { return alpha_of(time_step()); }  // share of PIC in the next step
+  std::int64_t bytes() const;
+
+ private:
+  void fill(const InitialPoints& given);
+  void choose_kernel();
+  View view();
+  void prepare();
+  void step(double dt);
+  [[noreturn]] void fail(int lost, double dt);
+  void follow_width(double width);
+  void damp_at_peak();
+  double alpha_of(double dt) const;
+  double narrowest_width() const;
+
+  Method method_;
+  InstructionSet instruction_set_;
+  std::vector<Material> materials_;
+  std::vector<Law> laws_;
+  Grid grid_;
+  Points points_;
+  Layout layout_;
+  Basis basis_ = Basis::linear;
+  Kernel kernel_{};
+  Gravity gravity_;
+  Damping damping_;
+  std::vector<Report> reports_;  // of each slab
+  std::vector<Speeds> speeds_;
+  double half_length_ = 0.0;  // of all points where they are alike, otherwise their mean, m
+  double width_ = 0.0;        // of the widest domain, cells
+  double time_ = 0.0;
+  std::int64_t steps_ = 0;
+  double last_kinetic_ = 0.0;
+  double travel_ = 0.0;  // since the last sort, at most, cells
+  int steps_since_sort_ = 0;
+  bool sorted_ = false;
+  bool nodes_ready_ = false;  // mass and momentum at the nodes are those of the points
+};
+
+}  // namespace gimpslope

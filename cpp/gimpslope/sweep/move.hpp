@@ -1,0 +1,67 @@
+// Second sweep over the points of a step: velocity, place and domain, then mass and momentum at the
+// nodes for the next step.
+#pragma once
+
+#include <cmath>
+
+#include "../domain.hpp"
+#include "scatter.hpp"
+#include "weights.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Farthest a point may move in one step, cells. Slabs and active nodes are laid out for a travel
+/// of one cell between two sorts, and points are sorted once the travel has passed half a cell.
+constexpr double kFarthestStep = 0.5;
+
+/// Velocity (paper eq. 26) and place: motion = {x, y, (1-alpha) vx, (1-alpha) vy} + sum S update.
+template <class Shape>
+void move_points(const View& view, int begin, int n, double alpha, const Weights<Shape>& weights,
+                 Report& report) {
+  const double* update = view.grid.update;
+  const int stride = view.grid.stride;
+  const double per_cell = 1.0 / view.grid.cell;
+  const Quad keep(1.0, 1.0, 1.0 - alpha, 1.0 - alpha);
+  double* motion = view.points.motion + 4 * begin;
+  for (int k = 0; k < n; ++k) {
+    const double* first = update + 4 * weights.first[k];
+    Quad sum = Quad::Zero();
+    for (int j = 0; j < Shape::nodes; ++j) {
+      const double* row = first + 4 * j * stride;
+      Quad along = quad(row) * weights.x[0][k];
+      for (int i = 1; i < Shape::nodes; ++i) along += quad(row + 4 * i) * weights.x[i][k];
+      sum += along * weights.y[j][k];
+    }
+    const double dx = per_cell * std::abs(sum[0]), dy = per_cell * std::abs(sum[1]);
+    if (!(dx <= kFarthestStep && dy <= kFarthestStep)) {  // true of NaN, too
+      report.lost = begin + k;
+      return;
+    }
+    const double farther = dx > dy ? dx : dy;
+    report.travel = farther > report.travel ? farther : report.travel;
+    quad(motion + 4 * k) = keep * quad(motion + 4 * k) + sum;
+  }
+}
+
+/// New domains, how far their edges moved, and the widest one.
+inline void resize_domains(const View& view, int begin, int n, Report& report) {
+  double* half_length = view.points.half_length + 2 * begin;
+  const double per_cell = 1.0 / view.grid.cell;
+  double before[2 * kBlock];
+  for (int k = 0; k < 2 * n; ++k) before[k] = half_length[k];
+  update_domains(view, begin, n);
+  for (int k = 0; k < 2 * n; ++k) {
+    const double change = per_cell * std::abs(half_length[k] - before[k]);
+    const double width = 2.0 * per_cell * half_length[k];
+    if (!(width > 0.0 && change <= kFarthestStep)) {
+      report.lost = begin + k / 2;
+      return;
+    }
+    report.growth = change > report.growth ? change : report.growth;
+    report.width = width > report.width ? width : report.width;
+  }
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

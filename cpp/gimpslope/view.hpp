@@ -1,0 +1,89 @@
+// What the sweeps see of a solver: plain pointers, so that the code of every instruction set shares
+// nothing but data with the rest.
+#pragma once
+
+#include <cstdint>
+
+#include "material/material.hpp"
+#include "method.hpp"
+#include "wall.hpp"
+
+namespace gimpslope {
+
+/// Consecutive points of one material that a sweep takes through its short loops while they stay in
+/// the first-level cache.
+struct Block {
+  std::int32_t begin, end;
+  std::int32_t material;
+};
+constexpr int kBlock = 64;
+
+/// Consecutive blocks whose points start in the same few rows of cells.
+struct Slab {
+  std::int32_t begin, end;
+};
+
+/// One value a point, in storage order; motion holds {x, y, vx, vy}, deformation the rows of F,
+/// half_length and domain_reference {x, y}. The last three are null where the method needs none.
+struct PointsView {
+  double* motion;
+  double *stress_xx, *stress_yy, *stress_zz, *stress_xy;
+  double *volume, *plastic_strain;
+  const double* mass;
+  double *half_length, *domain_reference, *deformation;
+};
+
+/// Active nodes of a row: [begin, end).
+struct NodeRange {
+  std::int32_t begin, end;
+};
+
+/// Four doubles a node. `momentum` {m, m vx, m vy, -}, `velocity` {vx, vx, vy, vy} and `force`
+/// {fx, fx, fy, fy} (the sum of each pair is the force) are laid out so that one multiplication by
+/// {S,x S S,x S} serves both components; `update` {dt vx, dt vy, bx, by} is what a point adds to
+/// its motion.
+struct GridView {
+  double cell;
+  double left, bottom;  // coordinates of node 0
+  int stride;           // nodes from one row to the next
+  int rows;
+  const NodeRange* active;  // of each row
+  double *momentum, *velocity, *force, *update;
+  WallKind kind[4];
+  double friction[4];
+  int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
+};
+
+struct View {
+  PointsView points;
+  GridView grid;
+  const Block* blocks;
+  const Slab* slabs;
+  int slab_count;
+  const Law* laws;     // of each material
+  double half_length;  // of all points alike, where points.half_length is null
+  DomainUpdate domain_update;
+  VolumeUpdate volume_update;
+  int threads;
+};
+
+struct StepInput {
+  double dt, alpha;
+  double gravity_x, gravity_y;
+  double local_damping;
+};
+
+/// What a slab reports of a step. Maxima do not depend on the order of the slabs.
+struct Report {
+  double travel = 0.0;     // largest displacement of a point, cells
+  double growth = 0.0;     // largest change of a half-length, cells
+  double width = 0.0;      // largest domain width, cells
+  std::int32_t lost = -1;  // storage index of a point that moved or grew beyond the limit
+};
+
+/// Largest squared speed and largest volume per mass times wave modulus, i.e. squared wave speed.
+struct Speeds {
+  double point = 0.0, wave = 0.0;
+};
+
+}  // namespace gimpslope

@@ -1,0 +1,45 @@
+// The condition at one side of the domain, applied to every node on or beyond it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "instruction_set.hpp"
+
+namespace gimpslope {
+
+enum class WallKind { free, roller, fixed, coulomb };
+
+struct Wall {
+  WallKind kind = WallKind::free;
+  double friction = 0.0;  // Coulomb coefficient
+  double position = 0.0;  // m; x of the left and right wall, y of the bottom and top wall
+};
+
+enum Side { left, right, bottom, top };
+
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Velocity of a node at a wall before the strain step: no motion through a roller or fixed wall,
+/// none into a Coulomb wall. `outward` is +1 where the wall lies towards larger coordinates.
+inline void constrain(WallKind kind, double outward, double& normal, double& tangential) {
+  if (kind == WallKind::coulomb) {
+    if (outward * normal > 0.0) normal = 0.0;
+  } else if (kind != WallKind::free) {
+    normal = 0.0;
+    if (kind == WallKind::fixed) tangential = 0.0;
+  }
+}
+
+/// Updated velocity of a node at a wall. A Coulomb wall takes the velocity that presses into it
+/// and, as friction impulse, at most mu times as much from the tangential one.
+inline void react(WallKind kind, double mu, double outward, double& normal, double& tangential) {
+  if (kind == WallKind::coulomb && outward * normal > 0.0) {
+    const double speed = std::abs(tangential);
+    tangential *= speed > 0.0 ? std::max(0.0, 1.0 - mu * std::abs(normal) / speed) : 0.0;
+  }
+  constrain(kind, outward, normal, tangential);
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

@@ -1,0 +1,31 @@
+// One function a subject, each in a file of its own; names of options as Python gives them.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <initializer_list>
+#include <string>
+#include <utility>
+
+#include "gimpslope/error.hpp"
+
+namespace py = pybind11;
+
+void bind_material(py::module_& m);
+void bind_kernel(py::module_& m);
+void bind_solver(py::module_& m);
+
+/// The value that goes by `text`; refuses others with the list of names.
+template <class Value>
+Value parse(const char* parameter, const std::string& text,
+            std::initializer_list<std::pair<const char*, Value>> names) {
+  std::string rule = "one of";
+  const char* separator = " ";
+  for (const auto& [name, value] : names) {
+    if (text == name) return value;
+    rule += separator + std::string(name);
+    separator = ", ";
+  }
+  gimpslope::require(false, parameter, "'" + text + "'", rule.c_str());
+  return names.begin()->second;
+}

@@ -1,0 +1,229 @@
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
+
+#include <chrono>
+
+#include "bind.hpp"
+#include "gimpslope/solver.hpp"
+
+using namespace gimpslope;
+
+namespace {
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+using Integers = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
+using WallTuple = std::tuple<std::string, double, double>;  // kind, friction, position
+using Choice = std::pair<std::string, double>;              // what a value means, the value
+
+template <class T>
+std::span<const T> span(const py::array_t<T, py::array::c_style | py::array::forcecast>& array) {
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+Wall wall(const WallTuple& given) {
+  const auto& [kind, friction, position] = given;
+  return {parse<WallKind>("wall", kind,
+                          {{"free", WallKind::free},
+                           {"roller", WallKind::roller},
+                           {"fixed", WallKind::fixed},
+                           {"coulomb", WallKind::coulomb}}),
+          friction, position};
+}
+
+TimeStep time_step(const Choice& given) {
+  return {parse<TimeStep::Kind>(
+              "time_step", given.first,
+              {{"fixed", TimeStep::Kind::fixed}, {"courant", TimeStep::Kind::courant}}),
+          given.second};
+}
+
+Blend blend(const Choice& given) {
+  return {parse<Blend::Kind>("blend", given.first,
+                             {{"alpha", Blend::Kind::alpha},
+                              {"viscosity", Blend::Kind::viscosity},
+                              {"relaxation_time", Blend::Kind::relaxation_time}}),
+          given.second};
+}
+
+Solver make(const Doubles& position, const Doubles& velocity, const Doubles& half_length,
+            const Doubles& mass, const Doubles& volume, const Integers& material,
+            std::vector<Material> materials, double cell, std::array<double, 2> origin,
+            const std::array<WallTuple, 4>& walls, const std::string& shape,
+            const std::string& domain_update, const std::string& volume_update,
+            const std::string& scheme, const Choice& blended, const Choice& step, int threads,
+            bool allow_unstable, const std::string& instruction_set) {
+  Method method;
+  method.shape = parse<ShapeKind>(
+      "shape", shape,
+      {{"linear", ShapeKind::linear}, {"ugimp", ShapeKind::ugimp}, {"cpgimp", ShapeKind::cpgimp}});
+  method.domain_update =
+      parse<DomainUpdate>("domain_update", domain_update,
+                          {{"none", DomainUpdate::none},
+                           {"jacobian", DomainUpdate::jacobian},
+                           {"stretch", DomainUpdate::stretch},
+                           {"deformation_diagonal", DomainUpdate::deformation_diagonal}});
+  method.volume_update = parse<VolumeUpdate>(
+      "volume_update", volume_update,
+      {{"linear", VolumeUpdate::linear}, {"exponential", VolumeUpdate::exponential}});
+  method.scheme = parse<SchemeKind>("scheme", scheme, {{"usf", SchemeKind::usf}});
+  method.blend = blend(blended);
+  method.time_step = time_step(step);
+  method.threads = threads;
+  method.allow_unstable = allow_unstable;
+  const InitialPoints points{span(position), span(velocity), span(half_length),
+                             span(mass),     span(volume),   span(material)};
+  return Solver(points, std::move(materials), cell, origin,
+                {wall(walls[0]), wall(walls[1]), wall(walls[2]), wall(walls[3])}, method,
+                instruction_set.empty() ? available_instruction_sets().back()
+                                        : parse_instruction_set(instruction_set));
+}
+
+/// Runs chunk(steps) -> finished without the interpreter's lock, in pieces of about a twentieth of
+/// a second, and looks for Ctrl-C in between.
+template <class Chunk>
+void interruptible(std::int64_t steps, Chunk chunk) {
+  using Clock = std::chrono::steady_clock;
+  constexpr double pause = 0.05;
+  for (std::int64_t piece = 1; steps > 0;) {
+    const std::int64_t now = std::min(piece, steps);
+    const auto start = Clock::now();
+    bool finished;
+    {
+      py::gil_scoped_release release;
+      finished = chunk(now);
+    }
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    if (finished) return;
+    steps -= now;
+    const double spent = std::chrono::duration<double>(Clock::now() - start).count();
+    if (spent < 0.5 * pause) piece *= 2;
+    if (spent > 2.0 * pause && piece > 1) piece /= 2;
+  }
+}
+
+/// A window onto a field in storage order; it keeps the solver alive.
+py::array window(py::object owner, const std::string& name) {
+  auto& solver = owner.cast<Solver&>();
+  const FieldView f = solver.field(name);
+  constexpr auto size = static_cast<py::ssize_t>(sizeof(double));
+  std::vector<py::ssize_t> shape{solver.size()}, strides{f.point_stride * size};
+  if (f.components > 1) {
+    shape.push_back(f.components);
+    strides.push_back(f.component_stride * size);
+  }
+  py::array_t<double> array(shape, strides, f.data, owner);
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+py::array_t<double> values(Solver& solver, const std::string& name) {
+  const std::vector<double> found = solver.values(name);
+  std::vector<py::ssize_t> shape{solver.size()};
+  if (const int components = solver.field(name).components; components > 1)
+    shape.push_back(components);
+  return py::array_t<double>(shape, found.data());
+}
+
+}  // namespace
+
+void bind_solver(py::module_& m) {
+  static py::exception<Diverged> diverged(m, "Diverged", PyExc_RuntimeError);
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Diverged& error) {
+      py::object instance = py::reinterpret_borrow<py::object>(diverged)(error.what());
+      instance.attr("step") = error.step;
+      instance.attr("time") = error.time;
+      instance.attr("point") = error.point;
+      PyErr_SetObject(diverged.ptr(), instance.ptr());
+    }
+  });
+
+  py::class_<Solver>(m, "Solver", "State of a scene and its stepping.")
+      .def(py::init(&make), py::arg("position"), py::arg("velocity"), py::arg("half_length"),
+           py::arg("mass"), py::arg("volume"), py::arg("material"), py::arg("materials"),
+           py::kw_only(), py::arg("cell"), py::arg("origin"), py::arg("walls"),
+           py::arg("shape") = "ugimp", py::arg("domain_update") = "none",
+           py::arg("volume_update") = "linear", py::arg("scheme") = "usf",
+           py::arg("blend") = Choice{"alpha", 0.0}, py::arg("time_step") = Choice{"courant", 0.4},
+           py::arg("threads") = 1, py::arg("allow_unstable") = false,
+           py::arg("instruction_set") = "")
+      .def(
+          "advance",
+          [](Solver& solver, std::int64_t steps) {
+            require(steps >= 0, "steps", steps, "zero or positive");
+            interruptible(steps, [&](std::int64_t now) {
+              solver.advance(now);
+              return false;
+            });
+          },
+          py::arg("steps") = 1)
+      .def(
+          "advance_to",
+          [](Solver& solver, double time) {
+            interruptible(INT64_MAX,
+                          [&](std::int64_t now) { return solver.advance_to(time, now); });
+          },
+          py::arg("time"))
+      .def(
+          "set_gravity",
+          [](Solver& s, double x, double y, double ramp) { s.set_gravity({x, y, ramp}); },
+          py::arg("x"), py::arg("y"), py::arg("ramp") = 0.0)
+      .def(
+          "set_damping",
+          [](Solver& s, double local, bool kinetic) { s.set_damping({local, kinetic}); },
+          py::arg("local") = 0.0, py::arg("kinetic") = false)
+      .def(
+          "set_time_step",
+          [](Solver& s, const std::string& kind, double value) {
+            s.set_time_step(time_step({kind, value}));
+          },
+          py::arg("kind"), py::arg("value"))
+      .def("set_materials", &Solver::set_materials, py::arg("materials"))
+      .def("release_stress", &Solver::release_stress)
+      .def("reset_clock", &Solver::reset_clock)
+      .def("energies",
+           [](const Solver& s) {
+             const Energies e = s.energies();
+             py::dict result;
+             result["kinetic"] = e.kinetic;
+             result["potential"] = e.potential;
+             result["elastic"] = e.elastic;
+             result["max_speed"] = e.max_speed;
+             return result;
+           })
+      .def("get", &values, py::arg("name"))
+      .def(
+          "set",
+          [](Solver& s, const std::string& name, const Doubles& given) {
+            s.set_values(name, span(given));
+          },
+          py::arg("name"), py::arg("values"))
+      .def("view", &window, py::arg("name"))
+      .def("material",
+           [](const Solver& s) {
+             const auto found = s.material_of_points();
+             return py::array_t<std::int32_t>(static_cast<py::ssize_t>(found.size()), found.data());
+           })
+      .def("numbers",
+           [](py::object owner) {
+             const auto numbers = owner.cast<Solver&>().numbers();
+             py::array_t<std::int32_t> array(static_cast<py::ssize_t>(numbers.size()),
+                                             numbers.data(), owner);
+             array.attr("setflags")(py::arg("write") = false);
+             return array;
+           })
+      .def_property_readonly("time", &Solver::time)
+      .def_property_readonly("steps", &Solver::steps)
+      .def_property_readonly("size", &Solver::size)
+      .def_property_readonly("cell", &Solver::cell)
+      .def_property_readonly("threads", &Solver::threads)
+      .def_property_readonly("instruction_set",
+                             [](const Solver& s) { return name(s.instruction_set()); })
+      .def_property_readonly("time_step", &Solver::time_step)
+      .def_property_readonly("stable_time_step", &Solver::stable_time_step)
+      .def_property_readonly("courant_limit", &Solver::courant_limit)
+      .def_property_readonly("alpha", &Solver::alpha)
+      .def_property_readonly("bytes", &Solver::bytes);
+}

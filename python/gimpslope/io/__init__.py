@@ -1,0 +1,1 @@
+"""Files that gimpslope writes and reads."""

@@ -1,0 +1,390 @@
+"""The run file: HDF5, format 1, readable with h5py alone.
+
+Root attributes
+    format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
+    ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads;
+    JSON text: scene, method, stages, and at the end of the run summary and timing (wall_seconds
+    spent stepping, point_steps).
+/points
+    the points at the start of the slide, in the order in which they were given.
+/energy
+    one column a dataset, all of the same length, rows of all stages.
+/snapshots
+    the slide at chosen times, first at its start; axis 0 is time; 32-bit.
+/final
+    the same fields once, 64-bit; attribute time.
+/trigger
+    attributes energy_released (J/m), settling_time (s), settling_ratio (kinetic over potential).
+
+Every dataset has the attributes units and description. The file is closed between flushes, and a
+process killed at any moment leaves it readable to the last flush.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from datetime import UTC, datetime
+from os import PathLike
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .atomic import change, uninterrupted
+
+FORMAT = "gimpslope run"
+FORMAT_VERSION = 1
+STAGES = ("gravity", "settling", "slide")
+STATUSES = ("running", "finished", "interrupted", "failed")
+
+Arrays = dict[str, NDArray[Any]]
+
+JSON_ATTRIBUTES = {"scene", "method", "stages", "summary", "timing"}
+
+_ENERGY_CHUNK = 1024
+_TIME_CHUNK = 128
+_NO_TIMES = np.empty(0)
+
+
+class Quantity(NamedTuple):
+    """What a dataset holds: type, shape of one item (without the points), units, description."""
+
+    dtype: str
+    shape: tuple[int, ...]
+    units: str
+    description: str
+
+
+POINTS = {
+    "position": Quantity("f8", (2,), "m", "position (x, y) at the start of the slide"),
+    "mass": Quantity("f8", (), "kg/m", "mass per metre out of the plane"),
+    "volume": Quantity("f8", (), "m2", "volume per metre out of the plane at the start"),
+    "half_length": Quantity("f8", (2,), "m", "half of the point's width and height"),
+    "material": Quantity("i4", (), "1", "index into the attribute material_names"),
+}
+
+ENERGY = {
+    "stage": Quantity("u1", (), "1", "0 gravity, 1 settling, 2 slide"),
+    "time": Quantity("f8", (), "s", "time; in the slide from the trigger"),
+    "step": Quantity("i8", (), "1", "steps taken since the clock was last set to zero"),
+    "kinetic": Quantity("f8", (), "J/m", "kinetic energy per metre out of the plane"),
+    "potential": Quantity("f8", (), "J/m", "potential energy in gravity, zero at y = 0"),
+    "elastic": Quantity("f8", (), "J/m", "elastic strain energy"),
+    "max_speed": Quantity("f8", (), "m/s", "speed of the fastest point"),
+}
+
+FIELDS = {
+    "position": Quantity("f8", (2,), "m", "position (x, y)"),
+    "velocity": Quantity("f8", (2,), "m/s", "velocity (x, y)"),
+    "stress": Quantity("f8", (4,), "Pa", "stress (xx, yy, zz, xy), tension positive"),
+    "plastic_strain": Quantity("f8", (), "1", "equivalent plastic strain since the trigger"),
+    "volume": Quantity("f8", (), "m2", "volume per metre out of the plane"),
+}
+
+
+class RunWriter:
+    """Writes one run file.
+
+    Energy rows stay in memory until `flush`; snapshots, the trigger and the final state are
+    written at once, with the rows before them.
+
+    Parameters
+    ----------
+    path : the file to make; an empty file may exist there
+    scene_json, method_json, stages_json : complete parameters, JSON text
+    version : of gimpslope
+    instruction_set, threads : what the solver runs on
+    overwrite : whether a file that is not empty may be replaced
+
+    Raises
+    ------
+    FileExistsError
+        If there is a file that is not empty, and it may not be replaced.
+    """
+
+    def __init__(
+        self,
+        path: str | PathLike[str],
+        *,
+        scene_json: str,
+        method_json: str,
+        stages_json: str,
+        version: str,
+        instruction_set: str,
+        threads: int,
+        overwrite: bool = False,
+    ) -> None:
+        self.path = Path(path)
+        self._rows: list[Arrays] = []
+        self._count = 0
+        _make_room(self.path, overwrite)
+        with change(self.path) as file:
+            file.attrs["format"] = FORMAT
+            file.attrs["format_version"] = FORMAT_VERSION
+            file.attrs["gimpslope_version"] = version
+            file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
+            file.attrs["status"] = "running"
+            file.attrs["status_detail"] = ""
+            file.attrs["scene"] = scene_json
+            file.attrs["method"] = method_json
+            file.attrs["stages"] = stages_json
+            file.attrs["instruction_set"] = instruction_set
+            file.attrs["threads"] = threads
+            energy = file.create_group("energy")
+            for name, quantity in ENERGY.items():
+                _create_growing(energy, name, quantity, chunk=_ENERGY_CHUNK)
+
+    def write_points(
+        self,
+        position: ArrayLike,
+        mass: ArrayLike,
+        volume: ArrayLike,
+        half_length: ArrayLike,
+        material: ArrayLike,
+        material_names: Sequence[str],
+    ) -> None:
+        """Write the points; a second call, at the trigger, replaces the values of the first.
+
+        `position` and `half_length` are (n, 2) in m, `mass` (n,) in kg/m, `volume` (n,)
+        in m2, `material` (n,) indices into `material_names`. Raises `ValueError` for any
+        other shape.
+        """
+        values = {
+            "position": position,
+            "mass": mass,
+            "volume": volume,
+            "half_length": half_length,
+            "material": material,
+        }
+        count = len(np.asarray(position))
+        points = _checked(values, POINTS, count)
+        if self._count not in (0, count):
+            raise ValueError(f"position must have the {self._count} points of before, got {count}")
+        with self._flushed() as file:
+            if self._count:
+                for name, value in points.items():
+                    file["points"][name][...] = value
+            else:
+                _create_fixed(file.create_group("points"), points, POINTS)
+                file["points"].attrs["material_names"] = list(material_names)
+                _create_snapshots(file.create_group("snapshots"), count)
+        self._count = count
+
+    def append_energy(self, rows: Mapping[str, ArrayLike]) -> None:
+        """Keep rows of energy, one array (k,) for every name in `ENERGY`, for the next flush."""
+        count = np.size(rows.get("time", ()))
+        self._rows.append(_checked(rows, ENERGY, count))
+
+    def append_snapshot(self, time: float, fields: Mapping[str, ArrayLike]) -> None:
+        """Write one snapshot of the slide at `time` (s): an array for every name in `FIELDS`."""
+        values = _checked(fields, FIELDS, self._count)
+        with self._flushed() as file:
+            snapshots = file["snapshots"]
+            for name, value in values.items():
+                _extend(snapshots[name], value[np.newaxis])
+            _extend(snapshots["time"], np.array([time]))
+
+    def write_trigger(
+        self, *, energy_released: float, settling_time: float, settling_ratio: float
+    ) -> None:
+        """Write the energy released at the return, J/m, and how the settling ended, s and 1."""
+        with self._flushed() as file:
+            trigger = file.require_group("trigger")
+            trigger.attrs["energy_released"] = energy_released
+            trigger.attrs["settling_time"] = settling_time
+            trigger.attrs["settling_ratio"] = settling_ratio
+            trigger.attrs["description"] = (
+                "energy_released in J/m, settling_time in s, settling_ratio kinetic over potential"
+            )
+
+    def write_final(self, time: float, fields: Mapping[str, ArrayLike]) -> None:
+        """Write the last state of the slide at `time` (s): an array for every name in `FIELDS`."""
+        values = _checked(fields, FIELDS, self._count)
+        with self._flushed() as file:
+            final = file.create_group("final")
+            final.attrs["time"] = time
+            _create_fixed(final, values, FIELDS)
+
+    def write_timing(self, wall_seconds: float, point_steps: int) -> None:
+        """Write the time spent stepping (s) and the points times the steps taken in it."""
+        with self._flushed() as file:
+            file.attrs["timing"] = json.dumps(
+                {"wall_seconds": wall_seconds, "point_steps": point_steps}
+            )
+
+    def finish(self, status: str, detail: str, summary: Mapping[str, Any] | None = None) -> None:
+        """Write how the run ended: `status` one of `STATUSES`, in words, and its summary."""
+        if status not in STATUSES:
+            raise ValueError(f"status must be one of {', '.join(STATUSES)}, got {status!r}")
+        with self._flushed() as file:
+            file.attrs["status"] = status
+            file.attrs["status_detail"] = detail
+            if summary is not None:
+                file.attrs["summary"] = json.dumps(dict(summary))
+
+    def flush(self) -> None:
+        """Write the energy rows kept in memory."""
+        if self._rows:
+            with self._flushed():
+                pass
+
+    @contextmanager
+    def _flushed(self) -> Iterator[h5py.File]:
+        """The file opened for a change, with the rows kept in memory written first."""
+        with uninterrupted():
+            with change(self.path) as file:
+                if self._rows:
+                    for name in ENERGY:
+                        column = np.concatenate([rows[name] for rows in self._rows])
+                        _extend(file["energy"][name], column)
+                yield file
+            self._rows.clear()
+
+
+def read_attributes(path: str | PathLike[str]) -> dict[str, Any]:
+    """The root attributes; JSON text is decoded.
+
+    Raises `FileNotFoundError`, or `ValueError` for a file that is not a run file of format 1.
+    """
+    with _opened(path) as file:
+        attributes = {name: _plain(value) for name, value in file.attrs.items()}
+    for name in JSON_ATTRIBUTES & attributes.keys():
+        attributes[name] = json.loads(attributes[name])
+    return attributes
+
+
+def read_points(path: str | PathLike[str]) -> Arrays:
+    """The points at the start of the slide, by the names in `POINTS`; none yet: empty mapping."""
+    with _opened(path) as file:
+        return _read_all(file, "points", POINTS)
+
+
+def read_material_names(path: str | PathLike[str]) -> tuple[str, ...]:
+    """The names that `material` of the points counts."""
+    with _opened(path) as file:
+        names = file["points"].attrs["material_names"] if "points" in file else ()
+        return tuple(str(name) for name in names)
+
+
+def read_energy(path: str | PathLike[str]) -> Arrays:
+    """The energy rows of all stages, one array (k,) for every name in `ENERGY`."""
+    with _opened(path) as file:
+        columns = _read_all(file, "energy", ENERGY)
+    length = min(len(column) for column in columns.values())
+    return {name: column[:length] for name, column in columns.items()}
+
+
+def read_snapshot_times(path: str | PathLike[str]) -> NDArray[np.float64]:
+    """Times of the complete snapshots, s, shape (k,)."""
+    with _opened(path) as file:
+        snapshots = file.get("snapshots", {"time": _NO_TIMES})
+        complete = min(len(dataset) for dataset in snapshots.values())
+        times: NDArray[np.float64] = snapshots["time"][:complete]
+        return times
+
+
+def read_snapshot(path: str | PathLike[str], number: int) -> Arrays:
+    """The snapshot of that number, an array for every name in `FIELDS`, in 64 bits."""
+    with _opened(path) as file:
+        return {name: file["snapshots"][name][number].astype(np.float64) for name in FIELDS}
+
+
+def read_final(path: str | PathLike[str]) -> tuple[float, Arrays] | None:
+    """Time (s) and fields, by the names in `FIELDS`, of the final state; None if there is none."""
+    with _opened(path) as file:
+        if "final" not in file:
+            return None
+        return float(file["final"].attrs["time"]), _read_all(file, "final", FIELDS)
+
+
+def read_trigger(path: str | PathLike[str]) -> dict[str, float]:
+    """energy_released (J/m), settling_time (s) and settling_ratio; none yet: empty mapping."""
+    with _opened(path) as file:
+        trigger = file["trigger"].attrs if "trigger" in file else {}
+        return {name: float(trigger[name]) for name in trigger if name != "description"}
+
+
+@contextmanager
+def _opened(path: str | PathLike[str]) -> Iterator[h5py.File]:
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"path must name a run file, got {str(path)!r}, which is no file")
+    if not h5py.is_hdf5(path):
+        raise ValueError(f"path must name a run file, got {str(path)!r}, which is not HDF5")
+    with h5py.File(path, "r", locking=False) as file:
+        kind, version = file.attrs.get("format"), file.attrs.get("format_version")
+        if kind != FORMAT or version != FORMAT_VERSION:
+            raise ValueError(
+                f"path must name a {FORMAT!r} of format {FORMAT_VERSION}, got {str(path)!r}, "
+                f"which is {kind!r} of format {version}"
+            )
+        yield file
+
+
+def _read_all(file: h5py.File, group: str, quantities: Mapping[str, Quantity]) -> Arrays:
+    return {name: file[group][name][...] for name in quantities} if group in file else {}
+
+
+def _plain(value: Any) -> Any:
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _make_room(path: Path, overwrite: bool) -> None:
+    if path.exists() and path.stat().st_size > 0 and not overwrite:
+        raise FileExistsError(
+            f"path must name a new or empty file unless overwrite=True, got {str(path)!r}, "
+            "which exists and is not empty"
+        )
+    path.open("wb").close()
+
+
+def _checked(
+    values: Mapping[str, ArrayLike], quantities: Mapping[str, Quantity], count: int
+) -> Arrays:
+    """The values as arrays, refused unless they have just these names and (count, ...) shapes."""
+    if values.keys() != quantities.keys():
+        raise ValueError(f"the names must be {', '.join(quantities)}, got {', '.join(values)}")
+    arrays = {name: np.array(values[name], dtype=q.dtype) for name, q in quantities.items()}
+    for name, array in arrays.items():
+        shape = (count, *quantities[name].shape)
+        if array.shape != shape:
+            raise ValueError(f"{name} must have shape {shape}, got {array.shape}")
+    return arrays
+
+
+def _create_fixed(group: h5py.Group, values: Arrays, quantities: Mapping[str, Quantity]) -> None:
+    for name, value in values.items():
+        _describe(group.create_dataset(name, data=value), quantities[name])
+
+
+def _create_snapshots(group: h5py.Group, count: int) -> None:
+    time = Quantity("f8", (), "s", "time from the trigger")
+    _create_growing(group, "time", time, chunk=_TIME_CHUNK)
+    for name, quantity in FIELDS.items():
+        shape = (count, *quantity.shape)
+        _create_growing(group, name, quantity._replace(dtype="f4", shape=shape), chunk=1)
+
+
+def _create_growing(group: h5py.Group, name: str, quantity: Quantity, *, chunk: int) -> None:
+    dataset = group.create_dataset(
+        name,
+        shape=(0, *quantity.shape),
+        maxshape=(None, *quantity.shape),
+        chunks=(chunk, *quantity.shape),
+        dtype=quantity.dtype,
+    )
+    _describe(dataset, quantity)
+
+
+def _describe(dataset: h5py.Dataset, quantity: Quantity) -> None:
+    dataset.attrs["units"] = quantity.units
+    dataset.attrs["description"] = quantity.description
+
+
+def _extend(dataset: h5py.Dataset, values: NDArray[Any]) -> None:
+    length = len(dataset)
+    dataset.resize(length + len(values), axis=0)
+    dataset[length:] = values

@@ -1,0 +1,161 @@
+"""Materials: linear elasticity and Drucker-Prager plasticity, in plane strain."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+from . import _check, _core
+from ._record import Record
+
+Cone = Literal["outer", "inner", "plane_strain_associated", "plane_strain"]
+
+
+@dataclass(frozen=True)
+class Material(Record, ABC):
+    """What every material has: a density and isotropic elasticity.
+
+    Not made by itself; see `Elastic` and `DruckerPrager`.
+    """
+
+    density: float
+    young: float
+    poisson: float
+
+    def __post_init__(self) -> None:
+        self._store(
+            density=_check.positive("density", self.density),
+            young=_check.positive("young", self.young),
+            poisson=_check.in_range("poisson", self.poisson, -1, 0.5, "()"),
+        )
+
+    @property
+    def bulk_modulus(self) -> float:
+        """Bulk modulus K = E / (3 (1 - 2 nu)), Pa."""
+        return self.young / (3 * (1 - 2 * self.poisson))
+
+    @property
+    def shear_modulus(self) -> float:
+        """Shear modulus G = E / (2 (1 + nu)), Pa."""
+        return self.young / (2 * (1 + self.poisson))
+
+    @property
+    def wave_speed(self) -> float:
+        """Speed of pressure waves sqrt((K + 4 G / 3) / density), m/s."""
+        return math.sqrt((self.bulk_modulus + 4 * self.shear_modulus / 3) / self.density)
+
+    @abstractmethod
+    def to_core(self) -> _core.Material:
+        """The material as the compiled kernel takes it."""
+
+
+@dataclass(frozen=True)
+class Elastic(Material):
+    """Linear elastic material.
+
+    Parameters
+    ----------
+    density : kg/m3, > 0
+    young : Young's modulus, Pa, > 0
+    poisson : Poisson's ratio, in (-1, 0.5)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is not a finite number in its range.
+    """
+
+    def to_core(self) -> _core.Material:
+        """The material as the compiled kernel takes it."""
+        return _core.Material(self.density, self.young, self.poisson)
+
+
+@dataclass(frozen=True)
+class DruckerPrager(Material):
+    """Linear elastic, perfectly plastic material with the Drucker-Prager cone.
+
+    It yields at sqrt(J2) + eta p = xi c and flows along the gradient of sqrt(J2) + etabar p, with
+    p the mean stress, tension positive. The cone says how eta and xi follow from the friction
+    angle phi. The reference study (Front. Earth Sci. 2022, 10:968250) does not name its cone.
+
+    ========================= ================================= ================================
+    cone                      eta                               xi
+    ========================= ================================= ================================
+    "outer"                   6 sin phi / (sqrt3 (3 - sin phi)) 6 cos phi / (sqrt3 (3 - sin phi))
+    "inner"                   6 sin phi / (sqrt3 (3 + sin phi)) 6 cos phi / (sqrt3 (3 + sin phi))
+    "plane_strain_associated" 3 tan phi / sqrt(9 + 12 tan2 phi) 3 / sqrt(9 + 12 tan2 phi)
+    "plane_strain"            sin phi / D                       cos phi / D
+    ========================= ================================= ================================
+
+    The first two meet Mohr-Coulomb's corners of compression and extension, the third its collapse
+    load in plane strain with associated flow (de Souza Neto, Peric & Owen 2008, section 6.4.4);
+    for these etabar is eta with the dilation angle psi in place of phi. The fourth meets
+    Mohr-Coulomb in plane strain with flow at the angle psi: etabar = 3 sin psi /
+    sqrt(9 + 3 sin2 psi) and D = sqrt(1 - etabar2 / 3) + etabar sin phi / 3. With psi = phi it is
+    the third.
+
+    Parameters
+    ----------
+    density : kg/m3, > 0
+    young : Young's modulus, Pa, > 0
+    poisson : Poisson's ratio, in (-1, 0.5)
+    friction : friction angle phi, degrees, in [0, 90)
+    cohesion : c, Pa, >= 0; friction and cohesion may not both be zero
+    dilation : dilation angle psi, degrees, in [0, friction]
+    cone : one of the four names above
+    tension_cutoff : largest mean stress, Pa, from 0 to the apex of the cone c / tan(phi);
+        None: the apex
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is of the wrong type, not finite or out of its range.
+    """
+
+    friction: float
+    cohesion: float
+    dilation: float = 0.0
+    cone: Cone = "plane_strain_associated"
+    tension_cutoff: float | None = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self._store(
+            friction=_check.in_range("friction", self.friction, 0, 90, "[)"),
+            cohesion=_check.not_negative("cohesion", self.cohesion),
+        )
+        if self.friction == 0 and self.cohesion == 0:
+            raise ValueError("cohesion must be > 0 where friction is 0, got 0 (no strength)")
+        self._store(
+            dilation=_check.in_range("dilation", self.dilation, 0, self.friction),
+            cone=_check.one_of("cone", self.cone, get_args(Cone)),
+            tension_cutoff=self._checked_cutoff(),
+        )
+
+    def _checked_cutoff(self) -> float | None:
+        if self.tension_cutoff is None:
+            return None
+        if self.friction == 0:
+            return _check.not_negative("tension_cutoff", self.tension_cutoff)
+        apex = self.cohesion / math.tan(math.radians(self.friction))
+        return _check.in_range("tension_cutoff", self.tension_cutoff, 0, apex)
+
+    def elastic(self) -> Elastic:
+        """The same material without its yield surface."""
+        return Elastic(self.density, self.young, self.poisson)
+
+    def to_core(self) -> _core.Material:
+        """The material as the compiled kernel takes it."""
+        return _core.Material(
+            self.density,
+            self.young,
+            self.poisson,
+            law="drucker_prager",
+            friction=self.friction,
+            cohesion=self.cohesion,
+            dilation=self.dilation,
+            cone=self.cone,
+            tension_cutoff=math.inf if self.tension_cutoff is None else self.tension_cutoff,
+        )

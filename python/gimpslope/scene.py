@@ -1,0 +1,210 @@
+"""The scene: what is simulated, from outlines and materials to material points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, fields
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+import shapely
+
+from . import _check
+from ._check import FloatArray
+from ._record import Record
+from .materials import Material
+from .outline import Outline
+from .walls import Free, Walls
+
+_GRID_LINE = 1e-6
+_SLIVER = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Points:
+    """Material points, one read-only array a property.
+
+    Attributes
+    ----------
+    position : m, shape (n, 2)
+    half_length : half the sides of the point's square, m, shape (n, 2)
+    volume : area in the plane, m2 (m3 a metre of width), shape (n,)
+    mass : kg/m, shape (n,)
+    material : index into the scene's materials, shape (n,), uint16
+    """
+
+    position: FloatArray
+    half_length: FloatArray
+    volume: FloatArray
+    mass: FloatArray
+    material: npt.NDArray[np.uint16]
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            getattr(self, field.name).setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+
+@dataclass(frozen=True)
+class Scene(Record):
+    """A slope of soil, with or without stones, on a background grid between walls.
+
+    Parameters
+    ----------
+    outline : outline of the slope
+    soil : material of the slope
+    stones : outlines of the stones, inside the slope; they may touch but not overlap
+    stone : material of the stones; needed with stones, not allowed without
+    cell : side of a grid cell, m, > 0. The grid starts at the lower left corner of the outline's
+        bounding box
+    points_per_cell : points a cell, the square of a whole number; the points lie on a lattice
+        of spacing cell / sqrt(points_per_cell)
+    walls : conditions on the sides of the outline's bounding box. A right or top wall needs its
+        side on a grid line, within 1e-6 cell
+    gravity : m/s2, > 0, downwards
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is of the wrong type or out of its range, if a stone overlaps another, leaves
+        the slope or is too small to hold a point, if no point is inside the slope, or if a right or
+        top wall is off the grid lines.
+    """
+
+    outline: Outline
+    soil: Material
+    _: KW_ONLY
+    stones: Sequence[Outline] = ()
+    stone: Material | None = None
+    cell: float = 0.1
+    points_per_cell: int = 4
+    walls: Walls = Walls()
+    gravity: float = 9.81
+
+    def __post_init__(self) -> None:
+        _check.instance("outline", self.outline, Outline, "an Outline")
+        _check.instance("soil", self.soil, Material, "a material")
+        _check.instance("walls", self.walls, Walls, "a Walls")
+        self._store(
+            cell=_check.positive("cell", self.cell),
+            points_per_cell=_check.whole("points_per_cell", self.points_per_cell, 1),
+            gravity=_check.positive("gravity", self.gravity),
+        )
+        if math.isqrt(self.points_per_cell) ** 2 != self.points_per_cell:
+            raise ValueError(
+                "points_per_cell must be the square of a whole number (1, 4, 9, ...), "
+                f"got {self.points_per_cell}"
+            )
+        self._check_stones()
+        self._check_walls()
+        self._check_points()
+
+    @property
+    def materials(self) -> tuple[Material, ...]:
+        """The materials that `points.material` counts: soil, then that of the stones if any."""
+        return (self.soil,) if self.stone is None else (self.soil, self.stone)
+
+    @property
+    def spacing(self) -> float:
+        """Distance between neighbouring points, m."""
+        return self.cell / math.isqrt(self.points_per_cell)
+
+    @property
+    def origin(self) -> tuple[float, float]:
+        """A node of the grid: the lower left corner of the outline's bounding box, m."""
+        return self.outline.bounds[:2]
+
+    @property
+    def wall_positions(self) -> tuple[float, float, float, float]:
+        """x of the left and right, y of the bottom and top side, m; of a wall, its grid line."""
+        left, bottom, right, top = self.outline.bounds
+        if not isinstance(self.walls.right, Free):
+            right = left + round((right - left) / self.cell) * self.cell
+        if not isinstance(self.walls.top, Free):
+            top = bottom + round((top - bottom) / self.cell) * self.cell
+        return left, right, bottom, top
+
+    @property
+    def n_points(self) -> int:
+        """Number of material points."""
+        return len(self.points)
+
+    @cached_property
+    def points(self) -> Points:
+        """The material points at the start, row by row from the bottom, each row from the left."""
+        position = self.outline.lattice(self.spacing)
+        material = np.zeros(len(position), dtype=np.uint16)
+        for number, stone in enumerate(self.stones):
+            inside = stone.contains(position)
+            if not inside.any():
+                raise ValueError(
+                    f"stones[{number}] must hold a point, got none at the spacing of "
+                    f"{self.spacing:.6g} m: its area is {stone.area:.6g} m2"
+                )
+            material[inside] = 1
+        volume = np.full(len(position), self.spacing**2)
+        return Points(
+            position=position,
+            half_length=np.full_like(position, self.spacing / 2),
+            volume=volume,
+            mass=volume * np.array([kind.density for kind in self.materials])[material],
+            material=material,
+        )
+
+    def _check_stones(self) -> None:
+        if isinstance(self.stones, Outline) or not isinstance(self.stones, Sequence):
+            raise TypeError(f"stones must be a sequence of Outline, got {self.stones!r}")
+        self._store(stones=tuple(self.stones))
+        for number, stone in enumerate(self.stones):
+            _check.instance(f"stones[{number}]", stone, Outline, "an Outline")
+        if self.stone is not None:
+            _check.instance("stone", self.stone, Material, "a material or None")
+        if bool(self.stones) != (self.stone is not None):
+            raise ValueError(
+                "stone must be given with stones and only then, "
+                f"got {self.stone!r} with {len(self.stones)} stones"
+            )
+        self._check_stones_inside()
+        self._check_stones_apart()
+
+    def _check_stones_inside(self) -> None:
+        for number, stone in enumerate(self.stones):
+            outside = stone.polygon.difference(self.outline.polygon).area
+            if outside > _SLIVER * stone.area:
+                raise ValueError(
+                    f"stones[{number}] must lie inside the outline, got {outside:.6g} m2 "
+                    f"of its {stone.area:.6g} m2 outside"
+                )
+
+    def _check_stones_apart(self) -> None:
+        polygons = np.array([stone.polygon for stone in self.stones], dtype=object)
+        pairs = shapely.STRtree(polygons).query(polygons, predicate="intersects").T
+        for first, second in pairs[pairs[:, 0] < pairs[:, 1]]:
+            shared = polygons[first].intersection(polygons[second]).area
+            if shared > _SLIVER * min(polygons[first].area, polygons[second].area):
+                raise ValueError(
+                    f"stones[{first}] must not overlap stones[{second}], "
+                    f"got {shared:.6g} m2 in common"
+                )
+
+    def _check_walls(self) -> None:
+        left, bottom, right, top = self.outline.bounds
+        for side, length in (("right", right - left), ("top", top - bottom)):
+            cells = length / self.cell
+            off_line = abs(cells - round(cells)) > _GRID_LINE
+            if off_line and not isinstance(getattr(self.walls, side), Free):
+                raise ValueError(
+                    f"walls.{side} must be Free() or lie on a grid line, got {length:.9g} m from "
+                    f"the opposite side, which is {cells:.9g} cells of {self.cell:.9g} m"
+                )
+
+    def _check_points(self) -> None:
+        if self.n_points == 0:
+            raise ValueError(
+                f"cell must be small enough for a point inside the outline, got {self.cell} m "
+                f"with an outline of {self.outline.area:.6g} m2"
+            )

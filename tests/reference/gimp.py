@@ -1,0 +1,237 @@
+"""The material points and their step: update stress first (USF)."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .drucker_prager import (
+    Material,
+    elastic_increment,
+    energy_density,
+    moduli,
+    return_mapping,
+    rotate,
+)
+from .shapes import weights
+from .walls import Wall, hold_momentum, hold_velocity
+
+Array = NDArray[np.float64]
+
+
+class Reference:
+    """Plane-strain material points on a fixed grid; arguments as for the compiled solver.
+
+    The state is in plain attributes that may be read and assigned: position, velocity (n, 2);
+    stress (n, 4) as xx, yy, zz, xy; mass, volume, plastic_strain (n,); half_length (n, 2);
+    deformation_gradient (n, 2, 2); materials; time. The grid reaches `margin` cells beyond the
+    first positions; a point that leaves it is an error.
+    """
+
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        half_length: ArrayLike,
+        mass: ArrayLike,
+        volume: ArrayLike,
+        material: ArrayLike,
+        materials: Sequence[Material],
+        *,
+        cell: float,
+        origin: tuple[float, float],
+        walls: Sequence[Wall],
+        shape: str,
+        domain_update: str = "none",
+        volume_update: str = "linear",
+        blend: tuple[str, float],
+        time_step: tuple[str, float],
+        margin: int = 8,
+    ) -> None:
+        _check("shape", shape, "linear", "ugimp", "cpgimp")
+        _check(
+            "domain_update", domain_update, "none", "jacobian", "stretch", "deformation_diagonal"
+        )
+        _check("volume_update", volume_update, "linear", "exponential")
+        _check("blend", blend[0], "alpha", "viscosity", "relaxation_time")
+        _check("time_step", time_step[0], "fixed", "courant")
+        self.position = np.array(position, float)
+        self.velocity = np.array(velocity, float)
+        self.half_length = np.array(half_length, float)
+        self.mass = np.array(mass, float)
+        self.volume = np.array(volume, float)
+        self.material = np.array(material, int)
+        self.materials = list(materials)
+        n = len(self.position)
+        self.stress = np.zeros((n, 4))
+        self.plastic_strain = np.zeros(n)
+        self.deformation_gradient = np.tile(np.eye(2), (n, 1, 1))
+        self.first_half_length = self.half_length.copy()
+        self.first_volume = self.volume.copy()
+        self.time = 0.0
+
+        self.cell, self.walls, self.shape = cell, list(walls), shape
+        self.domain_update, self.volume_update = domain_update, volume_update
+        self.blend, self.step_rule = blend, time_step
+        self.set_gravity(0.0, 0.0, 0.0)
+        self.set_damping(0.0, False)
+
+        low = np.floor((self.position.min(axis=0) - origin) / cell).astype(int) - margin
+        high = np.ceil((self.position.max(axis=0) - origin) / cell).astype(int) + margin
+        x = origin[0] + cell * np.arange(low[0], high[0] + 1)
+        y = origin[1] + cell * np.arange(low[1], high[1] + 1)
+        self.lines = (x, y)
+        self.nodes = np.array([(a, b) for a in x for b in y])
+
+    def set_gravity(self, gx: float, gy: float, ramp: float) -> None:
+        """Acceleration, m/s2, reached linearly over `ramp` seconds (0: at once)."""
+        self.gravity, self.ramp = np.array([gx, gy]), ramp
+
+    def set_damping(self, local: float, kinetic: bool) -> None:
+        """Coefficient of local damping, and whether velocities are cleared at energy peaks."""
+        self.local_damping, self.kinetic_damping = local, kinetic
+        self.last_kinetic_energy = 0.0
+
+    @property
+    def time_step(self) -> float:
+        """The step that comes next, s."""
+        kind, value = self.step_rule
+        if kind == "fixed":
+            return value
+        stiffness = np.empty(len(self.mass))
+        for i, material in enumerate(self.materials):
+            _, shear, bulk = moduli(material)
+            stiffness[self.material == i] = bulk + 4 * shear / 3
+        wave = np.sqrt(stiffness * self.volume / self.mass).max()
+        flow = np.linalg.norm(self.velocity, axis=1).max()
+        return float(value * self.cell / (wave + flow))
+
+    def alpha(self, dt: float) -> float:
+        """Share of PIC in a step of dt."""
+        kind, value = self.blend
+        if kind == "alpha":
+            return value
+        if kind == "relaxation_time":
+            return dt / value
+        h = self.cell
+        lp = 0.0 if self.shape == "linear" else float(self.first_half_length.mean())
+        return value * dt / (h**2 * (1 / 6 + lp**2 / (3 * h**2)))
+
+    def advance(self, steps: int) -> None:
+        for _ in range(steps):
+            self._step()
+
+    def release_stress(self) -> float:
+        """Return the present stress to the yield surface; elastic energy released, J/m."""
+        before = self._elastic_energy()
+        self.stress = self._return(self.stress)
+        return before - self._elastic_energy()
+
+    def _step(self) -> None:
+        dt = self.time_step
+        s, sx, sy = weights(self.shape, self.position, self.half_length, self.lines, self.cell)
+        if not np.allclose(s.sum(axis=1), 1.0, atol=1e-9):
+            raise RuntimeError("a point has left the grid; make margin larger")
+
+        mass = s.T @ self.mass
+        momentum = s.T @ (self.mass[:, None] * self.velocity)
+        v_raw = _divide(momentum, mass)
+        v = hold_velocity(v_raw, self.nodes, self.walls, self.cell)
+
+        velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
+        self._deform(velocity_gradient, dt)
+
+        sigma = _tensor(self.stress)[:, :2, :2] * self.volume[:, None, None]
+        force = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
+        share = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
+        force += mass[:, None] * self.gravity * share
+        force -= self.local_damping * np.abs(force) * np.sign(v)
+
+        momentum = hold_momentum(momentum + dt * force, self.nodes, self.walls, self.cell)
+        v_new = _divide(momentum, mass)
+
+        alpha = self.alpha(dt)
+        pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
+        self.velocity = alpha * pic + (1 - alpha) * flip
+        self.position = self.position + dt * pic
+        self._update_domains()
+        self._damp_kinetic()
+        self.time += dt
+
+    def _deform(self, velocity_gradient: Array, dt: float) -> None:
+        """Volume, deformation gradient and stress from the velocity gradient (n, 2, 2)."""
+        dilation = np.trace(velocity_gradient, axis1=1, axis2=2) * dt
+        linear = self.volume_update == "linear"
+        self.volume = self.volume * (1 + dilation if linear else np.exp(dilation))
+        self.deformation_gradient = (np.eye(2) + velocity_gradient * dt) @ self.deformation_gradient
+
+        strain = np.zeros((len(self.mass), 3, 3))
+        strain[:, :2, :2] = (velocity_gradient + np.swapaxes(velocity_gradient, 1, 2)) * dt / 2
+        spin = (velocity_gradient[:, 1, 0] - velocity_gradient[:, 0, 1]) * dt / 2
+        trial = rotate(_tensor(self.stress), spin)
+        for i, material in enumerate(self.materials):
+            of = self.material == i
+            trial[of] += elastic_increment(material, strain[of])
+        self.stress = self._return(_components(trial))
+
+    def _return(self, stress: Array) -> Array:
+        returned = stress.copy()
+        for i, material in enumerate(self.materials):
+            of = self.material == i
+            tensor, plastic_strain = return_mapping(material, _tensor(stress[of]))
+            returned[of] = _components(tensor)
+            self.plastic_strain[of] += plastic_strain
+        return returned
+
+    def _elastic_energy(self) -> float:
+        energy = 0.0
+        for i, material in enumerate(self.materials):
+            of = self.material == i
+            energy += self.volume[of] @ energy_density(material, _tensor(self.stress[of]))
+        return float(energy)
+
+    def _update_domains(self) -> None:
+        if self.shape != "cpgimp" or self.domain_update == "none":
+            return
+        f = self.deformation_gradient
+        if self.domain_update == "jacobian":
+            growth = np.sqrt(self.volume / self.first_volume)[:, None]
+        elif self.domain_update == "stretch":
+            squares, axes = np.linalg.eigh(np.swapaxes(f, 1, 2) @ f)
+            stretch = axes * np.sqrt(squares)[:, None, :] @ np.swapaxes(axes, 1, 2)
+            growth = np.diagonal(stretch, axis1=1, axis2=2)
+        else:
+            growth = np.diagonal(f, axis1=1, axis2=2)
+        self.half_length = self.first_half_length * growth
+
+    def _damp_kinetic(self) -> None:
+        if not self.kinetic_damping:
+            return
+        energy = float(np.sum(self.mass[:, None] * self.velocity**2) / 2)
+        if energy < self.last_kinetic_energy:
+            self.velocity = np.zeros_like(self.velocity)
+            energy = 0.0
+        self.last_kinetic_energy = energy
+
+
+def _check(name: str, value: str, *allowed: str) -> None:
+    if value not in allowed:
+        raise ValueError(f"{name} is {value!r}; allowed: {', '.join(allowed)}")
+
+
+def _divide(momentum: Array, mass: Array) -> Array:
+    """Node velocity; 0 where there is no mass."""
+    return np.where(mass[:, None] > 0, momentum / np.where(mass > 0, mass, 1.0)[:, None], 0.0)
+
+
+def _tensor(stress: Array) -> Array:
+    """(n, 4) as xx, yy, zz, xy -> (n, 3, 3)."""
+    tensor = np.zeros((len(stress), 3, 3))
+    tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 2, 2] = stress[:, 0], stress[:, 1], stress[:, 2]
+    tensor[:, 0, 1] = tensor[:, 1, 0] = stress[:, 3]
+    return tensor
+
+
+def _components(tensor: Array) -> Array:
+    """(n, 3, 3) -> (n, 4) as xx, yy, zz, xy."""
+    return np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 2, 2], tensor[:, 0, 1]], axis=1)
