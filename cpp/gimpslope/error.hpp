@@ -17,14 +17,18 @@ struct Diverged : std::runtime_error {
   std::int64_t point;
 };
 
-/// Refuses a parameter: names it, its value and what is allowed.
+/// Refuses a parameter: names it, what is allowed, and its value.
 template <class Value>
-void require(bool allowed, const char* parameter, const Value& value, const char* rule) {
-  if (allowed) return;
+[[noreturn]] void refuse(const char* parameter, const Value& value, const std::string& rule) {
   std::ostringstream message;
   message.precision(12);
-  message << parameter << " = " << value << ": must be " << rule;
+  message << parameter << " must be " << rule << ", got " << value;
   throw std::invalid_argument(message.str());
+}
+
+template <class Value>
+void require(bool allowed, const char* parameter, const Value& value, const char* rule) {
+  if (!allowed) refuse(parameter, value, rule);
 }
 
 }  // namespace gimpslope

@@ -165,16 +165,20 @@ void Solver::advance(std::int64_t steps) {
 }
 
 bool Solver::advance_to(double time, std::int64_t most) {
-  require(std::isfinite(time), "time", time, "finite (s)");
+  require(std::isfinite(time), "time", time, "finite, in s");
   constexpr double rounding = 1e-9;  // of a step
-  for (std::int64_t k = 0; k <= most; ++k) {
+  for (std::int64_t k = 0; time_ < time; ++k) {
     const double dt = time_step(), left = time - time_;
-    if (left <= rounding * dt) return true;
-    if (k == most) return false;
-    const bool shorten = method_.time_step.kind == TimeStep::Kind::courant && left < 2.0 * dt;
-    step(shorten ? left / std::ceil(left / dt) : dt);
+    if (left <= rounding * dt) {
+      time_ = time;
+    } else if (k == most) {
+      return false;
+    } else {
+      const bool shorten = method_.time_step.kind == TimeStep::Kind::courant && left < 2.0 * dt;
+      step(shorten ? left / std::ceil(left / dt) : dt);
+    }
   }
-  return false;
+  return true;
 }
 
 void Solver::prepare() {

@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <initializer_list>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -19,13 +20,12 @@ void bind_solver(py::module_& m);
 template <class Value>
 Value parse(const char* parameter, const std::string& text,
             std::initializer_list<std::pair<const char*, Value>> names) {
-  std::string rule = "one of";
-  const char* separator = " ";
+  std::ostringstream rule;
+  const char* separator = "one of ";
   for (const auto& [name, value] : names) {
     if (text == name) return value;
-    rule += separator + std::string(name);
+    rule << separator << name;
     separator = ", ";
   }
-  gimpslope::require(false, parameter, "'" + text + "'", rule.c_str());
-  return names.begin()->second;
+  gimpslope::refuse(parameter, text, rule.str());
 }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -17,7 +18,8 @@ Cone = Literal["outer", "inner", "plane_strain_associated", "plane_strain"]
 class Material(Record, ABC):
     """What every material has: a density and isotropic elasticity.
 
-    Not made by itself; see `Elastic` and `DruckerPrager`.
+    Not made by itself; see `Elastic` and `DruckerPrager`. The compiled kernel checks the ranges and
+    holds the formulas.
     """
 
     density: float
@@ -26,25 +28,29 @@ class Material(Record, ABC):
 
     def __post_init__(self) -> None:
         self._store(
-            density=_check.positive("density", self.density),
-            young=_check.positive("young", self.young),
-            poisson=_check.in_range("poisson", self.poisson, -1, 0.5, "()"),
+            density=_check.finite("density", self.density),
+            young=_check.finite("young", self.young),
+            poisson=_check.finite("poisson", self.poisson),
         )
 
     @property
     def bulk_modulus(self) -> float:
         """Bulk modulus K = E / (3 (1 - 2 nu)), Pa."""
-        return self.young / (3 * (1 - 2 * self.poisson))
+        return self.to_core().bulk_modulus
 
     @property
     def shear_modulus(self) -> float:
         """Shear modulus G = E / (2 (1 + nu)), Pa."""
-        return self.young / (2 * (1 + self.poisson))
+        return self.to_core().shear_modulus
 
     @property
     def wave_speed(self) -> float:
         """Speed of pressure waves sqrt((K + 4 G / 3) / density), m/s."""
-        return math.sqrt((self.bulk_modulus + 4 * self.shear_modulus / 3) / self.density)
+        return self.to_core().wave_speed
+
+    def elastic(self) -> Elastic:
+        """The same material without its yield surface, if it has one."""
+        return Elastic(self.density, self.young, self.poisson)
 
     @abstractmethod
     def to_core(self) -> _core.Material:
@@ -66,6 +72,10 @@ class Elastic(Material):
     TypeError, ValueError
         If a parameter is not a finite number in its range.
     """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.to_core()
 
     def to_core(self) -> _core.Material:
         """The material as the compiled kernel takes it."""
@@ -123,28 +133,24 @@ class DruckerPrager(Material):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._store(
-            friction=_check.in_range("friction", self.friction, 0, 90, "[)"),
-            cohesion=_check.not_negative("cohesion", self.cohesion),
-        )
-        if self.friction == 0 and self.cohesion == 0:
-            raise ValueError("cohesion must be > 0 where friction is 0, got 0 (no strength)")
-        self._store(
-            dilation=_check.in_range("dilation", self.dilation, 0, self.friction),
+            friction=_check.finite("friction", self.friction),
+            cohesion=_check.finite("cohesion", self.cohesion),
+            dilation=_check.finite("dilation", self.dilation),
             cone=_check.one_of("cone", self.cone, get_args(Cone)),
-            tension_cutoff=self._checked_cutoff(),
         )
+        if self.tension_cutoff is not None:
+            self._store(tension_cutoff=_check.finite("tension_cutoff", self.tension_cutoff))
+        self.to_core()
 
-    def _checked_cutoff(self) -> float | None:
-        if self.tension_cutoff is None:
-            return None
-        if self.friction == 0:
-            return _check.not_negative("tension_cutoff", self.tension_cutoff)
-        apex = self.cohesion / math.tan(math.radians(self.friction))
-        return _check.in_range("tension_cutoff", self.tension_cutoff, 0, apex)
+    @property
+    def cone_coefficients(self) -> tuple[float, float, float]:
+        """eta, xi and etabar of the cone."""
+        return self.to_core().cone_coefficients
 
-    def elastic(self) -> Elastic:
-        """The same material without its yield surface."""
-        return Elastic(self.density, self.young, self.poisson)
+    @property
+    def tension_limit(self) -> float:
+        """Largest mean stress, Pa: the cut-off, or the apex c / tan(phi)."""
+        return self.to_core().tension_limit
 
     def to_core(self) -> _core.Material:
         """The material as the compiled kernel takes it."""

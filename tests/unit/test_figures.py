@@ -121,7 +121,7 @@ def test_panels_after_the_end_say_so(tmp_path: Path) -> None:
 
 def test_a_run_without_a_slide_is_refused(tmp_path: Path) -> None:
     run = Run(synthetic.new_writer(tmp_path / "run.h5").path)
-    with pytest.raises(ValueError, match="run.h5"):
+    with pytest.raises(ValueError, match=r"run.h5"):
         figures.write_figures(run, tmp_path)
 
 

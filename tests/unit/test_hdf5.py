@@ -131,7 +131,7 @@ def test_rows_wait_for_the_flush(tmp_path: Path) -> None:
 def test_a_file_that_is_not_empty_is_refused_and_kept(tmp_path: Path) -> None:
     path = tmp_path / "a.h5"
     path.write_text("precious")
-    with pytest.raises(FileExistsError, match="a.h5"):
+    with pytest.raises(FileExistsError, match=r"a.h5"):
         synthetic.new_writer(path)
     assert path.read_text() == "precious"
     synthetic.new_writer(path, overwrite=True)
@@ -166,14 +166,14 @@ def test_wrong_names_shapes_and_statuses_are_refused(tmp_path: Path) -> None:
 
 
 def test_other_files_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileNotFoundError, match="absent.h5"):
+    with pytest.raises(FileNotFoundError, match=r"absent.h5"):
         hdf5.read_attributes(tmp_path / "absent.h5")
     (tmp_path / "text.h5").write_text("no")
-    with pytest.raises(ValueError, match="text.h5.*not HDF5"):
+    with pytest.raises(ValueError, match=r"text.h5.*not HDF5"):
         hdf5.read_attributes(tmp_path / "text.h5")
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file.attrs["format"] = "other"
-    with pytest.raises(ValueError, match="other.h5.*'other'"):
+    with pytest.raises(ValueError, match=r"other.h5.*'other'"):
         hdf5.read_attributes(tmp_path / "other.h5")
 
 

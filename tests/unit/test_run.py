@@ -36,7 +36,7 @@ def test_energy_of_each_stage(run: Run) -> None:
     assert run.energy.time[0] == 0 and run.energy.time[-1] == pytest.approx(synthetic.END)
     assert len(run.energy.stage("gravity")) == 5
     assert len(run.energy.stage("settling")) == 3
-    with pytest.raises(ValueError, match="'gravity', 'settling', 'slide'.*'fall'"):
+    with pytest.raises(ValueError, match=r"'gravity', 'settling', 'slide'.*'fall'"):
         run.energy.stage("fall")
 
 
@@ -67,7 +67,7 @@ def test_the_nearest_snapshot_is_taken(run: Run) -> None:
 
 @pytest.mark.parametrize("time", [-0.1, 4.1, float("nan")])
 def test_times_outside_of_the_run_are_refused(run: Run, time: float) -> None:
-    with pytest.raises(ValueError, match="time must be a.*number.*got"):
+    with pytest.raises(ValueError, match=r"time must be a.*number.*got"):
         run.snapshot(time)
 
 
@@ -133,7 +133,7 @@ def test_a_run_killed_before_the_slide(tmp_path: Path) -> None:
     assert run.summary["time_of_peak"] is None and run.summary["toe"] is None
     assert "not recorded" in run._repr_html_()
     for ask in (lambda: run.points, lambda: run.final, lambda: run.energy.peak):
-        with pytest.raises(ValueError, match="run.h5"):
+        with pytest.raises(ValueError, match=r"run.h5"):
             ask()
 
 

@@ -1,0 +1,56 @@
+"""Landslides of soil-rock slopes with the generalized interpolation material point method.
+
+A scene (outline, materials, walls) is simulated through its loading stages by a compiled kernel, and
+the run file is opened for analysis:
+
+>>> import gimpslope as gs
+>>> soil = gs.DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)
+>>> scene = gs.Scene(gs.Outline.slope(height=9, crest=2, angle=45), soil, cell=0.1)
+>>> run = gs.simulate(scene, duration=10, output="soil.h5")  # doctest: +SKIP
+>>> run.energy.plot()  # doctest: +SKIP
+
+Angles are in degrees, everything else in SI units.
+"""
+
+from importlib.metadata import version
+
+from . import kernel
+from .materials import DruckerPrager, Elastic, Material
+from .method import Method
+from .outline import Outline
+from .run import Run, open
+from .scene import Points, Scene
+from .simulation import NotSettledError, Simulation, simulate
+from .solver import Diverged, Energies, Solver
+from .stages import Gravity, Settling, Slide, Stages
+from .walls import Coulomb, Fixed, Free, Roller, Walls
+
+__version__ = version("gimpslope")
+
+__all__ = [
+    "Coulomb",
+    "Diverged",
+    "DruckerPrager",
+    "Elastic",
+    "Energies",
+    "Fixed",
+    "Free",
+    "Gravity",
+    "Material",
+    "Method",
+    "NotSettledError",
+    "Outline",
+    "Points",
+    "Roller",
+    "Run",
+    "Scene",
+    "Settling",
+    "Simulation",
+    "Slide",
+    "Solver",
+    "Stages",
+    "Walls",
+    "kernel",
+    "open",
+    "simulate",
+]

@@ -1,0 +1,151 @@
+"""The command `gimpslope`: run a slope, measure the speed, show what the build can do."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import gimpslope as gs
+
+from . import figures
+from .studies import benchmark, reference
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code is 0, 2 for refused arguments, 1 for a failed run and 130
+    for one that was interrupted."""
+    options = _parser().parse_args(arguments)
+    command: Callable[[argparse.Namespace], None] = options.command
+    try:
+        command(options)
+    except (ValueError, TypeError, FileExistsError) as refused:
+        print(f"gimpslope: {refused}", file=sys.stderr)
+        return 2
+    except (gs.Diverged, gs.NotSettledError, OSError) as failed:
+        print(f"gimpslope: {failed}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("gimpslope: interrupted; what was computed is in the run file", file=sys.stderr)
+        return 130
+    return 0
+
+
+def _run(options: argparse.Namespace) -> None:
+    for file in (options.summary, options.figures):
+        if file is not None and not Path(file).parent.is_dir():
+            raise ValueError(f"{file} must be in a directory that exists")
+    run = gs.simulate(
+        reference.soil_slope(options.reading, options.cell),
+        options.duration,
+        method=reference.method(
+            options.reading,
+            courant=options.courant,
+            time_step=options.time_step,
+            threads=options.threads,
+        ),
+        output=options.output,
+        overwrite=options.overwrite,
+        snapshot_times=reference.SNAPSHOT_TIMES,
+        progress=not options.quiet,
+    )
+    summary = run.summary
+    print(_comparison(summary, options.reading))
+    if options.summary is not None:
+        Path(options.summary).write_text(json.dumps(summary, indent=2) + "\n")
+    directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
+    figures.write_figures(run, directory, reference.PAPER)
+    print(f"run: {options.output}   figures: {directory}{os.sep}")
+
+
+def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
+    rows = [
+        ("time of peak kinetic energy", "time_of_peak", "s", "{:g}"),
+        ("peak kinetic energy", "peak_kinetic_energy", "kJ/m", ""),
+        ("fastest point at the peak", "speed_at_peak", "m/s", "> {:g}"),
+        ("largest displacement", "max_displacement_total", "m", "{:g}"),
+        ("  horizontal", "max_displacement_horizontal", "m", "{:g}"),
+        ("  vertical", "max_displacement_vertical", "m", "{:g}"),
+        ("toe", "toe", "m", ""),
+        ("final kinetic energy", "final_kinetic_energy", "kJ/m", ""),
+    ]
+    lines = [f"{'slope A, reading ' + reading:32}{'paper':>8}{'here':>10}"]
+    for title, name, unit, form in rows:
+        paper = form.format(reference.PAPER[name]) if form else "-"
+        value = summary[name]
+        scale = 1e-3 if unit == "kJ/m" else 1.0
+        here = "-" if value is None else f"{value * scale:.2f}"
+        lines.append(f"{title:32}{paper:>8}{here:>10} {unit}")
+    lines.append("The paper swaps the labels of horizontal and vertical; here they are put right.")
+    rate = summary["point_steps_per_second"]
+    if rate is not None:
+        lines.append(
+            f"{summary['points']:,} points, {summary['steps']:,} steps in "
+            f"{summary['wall_seconds']:.1f} s: {rate / 1e6:.1f} M point-steps/s"
+        )
+    return "\n".join(lines)
+
+
+def _bench(options: argparse.Namespace) -> None:
+    measurements = [
+        benchmark.measure(points, threads) for points in options.points for threads in options.threads
+    ]
+    print(benchmark.table(measurements))
+    if options.json is not None:
+        rows = [measurement.to_dict() for measurement in measurements]
+        Path(options.json).write_text(json.dumps(rows, indent=2) + "\n")
+
+
+def _info(_: argparse.Namespace) -> None:
+    print(f"gimpslope {gs.__version__}, Python {platform.python_version()}, {platform.machine()}")
+    print(f"instruction sets: {', '.join(gs.kernel.instruction_sets())} (the last is used)")
+    print(f"threads: {'OpenMP' if gs.kernel.has_threads() else 'not in this build'}")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="gimpslope", description=__doc__)
+    parser.add_argument("--version", action="version", version=f"gimpslope {gs.__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    run = commands.add_parser("run", help="simulate a slope of the reference study")
+    run.set_defaults(command=_run)
+    run.add_argument("slope", choices=["soil"], help="soil: slope A, homogeneous")
+    run.add_argument(
+        "--reading",
+        choices=list(reference.READINGS),
+        default="identified",
+        help="how the paper is read where it is silent (default: %(default)s)",
+    )
+    run.add_argument("--cell", type=float, default=0.1, metavar="H", help="m (default: %(default)s)")
+    run.add_argument(
+        "--duration", type=float, default=10.0, metavar="S", help="of the slide, s (default: 10)"
+    )
+    step = run.add_mutually_exclusive_group()
+    step.add_argument("--time-step", type=float, metavar="S", help="fixed, s")
+    step.add_argument("--courant", type=float, metavar="C", help="Courant number (default: 0.4)")
+    run.add_argument("--threads", type=int, default=1, metavar="N", help="(default: 1)")
+    run.add_argument("--output", default="soil.h5", metavar="FILE", help="(default: %(default)s)")
+    run.add_argument("--overwrite", action="store_true", help="replace an output file that exists")
+    run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
+    run.add_argument("--figures", metavar="DIR", help="(default: the output's name + _figures)")
+    run.add_argument("--quiet", action="store_true", help="no progress bar")
+
+    bench = commands.add_parser("bench", help="measure the speed of the kernel on slope A")
+    bench.set_defaults(command=_bench)
+    bench.add_argument(
+        "--points", type=int, nargs="+", default=[23_490], metavar="N", help="(default: 23490)"
+    )
+    bench.add_argument("--threads", type=int, nargs="+", default=[1], metavar="N", help="(default: 1)")
+    bench.add_argument("--json", metavar="FILE", help="write the measurements as JSON")
+
+    info = commands.add_parser("info", help="show version and instruction sets")
+    info.set_defaults(command=_info)
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+"""Single pieces of the compiled kernel, for tests and teaching."""
+
+from __future__ import annotations
+
+from typing import NamedTuple, get_args
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _core
+from ._check import FloatArray
+from .materials import DruckerPrager
+from .method import Shape
+
+
+class ShapeFunctions(NamedTuple):
+    """Shape functions of n points at the k nodes each of them reaches.
+
+    Attributes
+    ----------
+    nodes : column and row of the node, counted from the origin, shape (n, k, 2)
+    values : S, shape (n, k)
+    gradients : dS/dx and dS/dy, 1/m, shape (n, k, 2)
+    """
+
+    nodes: npt.NDArray[np.int64]
+    values: FloatArray
+    gradients: FloatArray
+
+
+class ReturnedStress(NamedTuple):
+    """Stresses on or within the yield surface, Pa, shape (n, 4), and the equivalent plastic strain
+    of the return, shape (n,)."""
+
+    stress: FloatArray
+    plastic_strain: FloatArray
+
+
+def shape_functions(
+    shape: Shape,
+    position: npt.ArrayLike,
+    half_length: npt.ArrayLike | None = None,
+    *,
+    cell: float,
+    origin: tuple[float, float] = (0.0, 0.0),
+) -> ShapeFunctions:
+    """Shape functions and gradients of points (Front. Earth Sci. 2022, 10:968250, eqs. 8, 15, 16).
+
+    Parameters
+    ----------
+    shape : "linear", "ugimp" or "cpgimp"; the last two are one function of the half-length
+    position : m, shape (n, 2)
+    half_length : half the sides of the points' domains, m, shape (n, 2), at most 1.5 cells; not
+        needed with "linear"
+    cell : side of a grid cell, m
+    origin : a node of the grid, m
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is of the wrong type, shape or range.
+    """
+    _check.one_of("shape", shape, get_args(Shape))
+    points = _check.array("position", position, ("n", 2))
+    if half_length is None and shape != "linear":
+        raise ValueError(f"half_length must be given with shape {shape!r}, got None")
+    halves = np.zeros_like(points) if half_length is None else half_length
+    halves = _check.array("half_length", halves, (len(points), 2))
+    return ShapeFunctions(*_core.shape_functions(shape, points, halves, cell, origin))
+
+
+def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> ReturnedStress:
+    """Trial stresses returned to the yield surface of a material.
+
+    On the cone the return follows the flow rule, beyond the tension limit it goes to the plane of
+    that mean stress or to the apex (de Souza Neto, Peric and Owen 2008, section 8.3).
+
+    Parameters
+    ----------
+    material : with its cone
+    stress : trial stresses xx, yy, zz, xy, tension positive, Pa, shape (n, 4)
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the material has no yield surface, or the stresses are of the wrong shape.
+    """
+    _check.instance("material", material, DruckerPrager, "a DruckerPrager")
+    trial = _check.array("stress", stress, ("n", 4))
+    return ReturnedStress(*_core.return_mapping(material.to_core(), trial))
+
+
+def instruction_sets() -> list[str]:
+    """Instruction sets that this build holds and this processor runs, the fastest last."""
+    return _core.instruction_sets()
+
+
+def has_threads() -> bool:
+    """Whether this build can use more than one thread."""
+    return _core.openmp()

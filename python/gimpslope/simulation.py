@@ -1,0 +1,352 @@
+"""A slope through its stages: gravity grows, the slope settles, it is let go, it slides."""
+
+from __future__ import annotations
+
+import json
+import math
+import time as clock
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
+from importlib.metadata import version
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from . import _check
+from .io.hdf5 import FIELDS, STAGES, RunWriter
+from .method import Method
+from .run import Run, summarise
+from .scene import Scene
+from .solver import Solver
+from .stages import Stages
+
+_FLUSH_INTERVAL = 1.0  # s of wall time
+
+
+class NotSettledError(RuntimeError):
+    """The slope did not come to rest within the time that its settling stage allows."""
+
+
+def simulate(
+    scene: Scene,
+    duration: float | None = None,
+    *,
+    method: Method | None = None,
+    stages: Stages | None = None,
+    output: str | PathLike[str] = "run.h5",
+    overwrite: bool = False,
+    energy_interval: float = 0.005,
+    snapshot_interval: float = 0.2,
+    snapshot_times: Sequence[float] = (),
+    progress: bool = True,
+) -> Run:
+    """Simulate a slope from its unloaded state until the slide ends, and write the run file.
+
+    Parameters
+    ----------
+    scene : what is simulated
+    duration : of the slide, s; that of the stages where left out
+    method : how the motion is computed; `Method()` where left out
+    stages : the loading stages; those of the reference study where left out
+    output : the run file
+    overwrite : replace a file of that name; without it a file that is not empty is refused
+    energy_interval : between rows of energy, s, > 0
+    snapshot_interval : between snapshots of the slide, s, > 0
+    snapshot_times : further times of snapshots, s, >= 0; those after the duration are left out
+    progress : show a progress bar
+
+    Raises
+    ------
+    TypeError, ValueError, FileExistsError
+        If a parameter is refused; nothing is written then.
+    NotSettledError
+        If the slope is not at rest when its settling stage ends.
+    Diverged
+        If the motion is no longer finite or outruns the grid.
+
+    After any error, Ctrl-C included, the file holds all that was computed and says how it ended.
+    """
+    stages = Stages() if stages is None else stages
+    if duration is not None:
+        stages = replace(stages, slide=replace(stages.slide, duration=duration))
+    simulation = Simulation(scene, method, stages)
+    recorder = Recorder(
+        simulation,
+        output,
+        overwrite=overwrite,
+        energy_interval=energy_interval,
+        snapshot_interval=snapshot_interval,
+        snapshot_times=snapshot_times,
+        progress=progress,
+    )
+    with recorder:
+        simulation.load(recorder)
+        simulation.settle(recorder)
+        simulation.release(recorder)
+        simulation.slide(recorder)
+    return Run(output)
+
+
+class Simulation:
+    """The stages of one slope, each a method, in the order load, settle, release, slide.
+
+    `solver` is the state; it may be looked at, and changed, between the stages. `simulate` runs
+    them all.
+    """
+
+    def __init__(
+        self, scene: Scene, method: Method | None = None, stages: Stages | None = None
+    ) -> None:
+        self.scene = scene
+        self.method = Method() if method is None else method
+        self.stages = Stages() if stages is None else stages
+        self.solver = Solver.of(scene, self.method, elastic=True)
+
+    def load(self, recorder: Recorder) -> None:
+        """Gravity grows linearly; all materials are elastic."""
+        ramp = self.stages.gravity.ramp
+        self.solver.set_gravity(0.0, -self.scene.gravity, ramp)
+        self.solver.set_damping(*self.stages.settling.to_core())
+        recorder.start("gravity", ramp)
+        while self.solver.time < ramp:
+            recorder.advance(min(self.solver.time + recorder.energy_interval, ramp))
+
+    def settle(self, recorder: Recorder) -> None:
+        """Damping brings the slope to rest.
+
+        At rest means that the kinetic energy has stayed below its share of the potential energy for
+        as long as a pressure wave needs to cross the scene twice: at a single moment it may be zero
+        in full swing. The potential energy counts from the bottom of the outline.
+        """
+        settling = self.stages.settling
+        start = self.solver.time
+        window = self._crossing_time()
+        recorder.start("settling", settling.limit)
+        calm_since, ratio = start, math.inf
+        while self.solver.time - calm_since < window:
+            if self.solver.time - start >= settling.limit:
+                raise NotSettledError(
+                    f"not at rest after settling for limit = {settling.limit} s: kinetic over "
+                    f"potential energy is {ratio:.3g}, above ratio = {settling.ratio}"
+                )
+            row = recorder.advance(self.solver.time + recorder.energy_interval)
+            ratio = row["kinetic"] / (row["potential"] - self._lowest_potential())
+            if ratio > settling.ratio:
+                calm_since = self.solver.time
+        self.settling_time, self.settling_ratio = self.solver.time - start, ratio
+
+    def release(self, recorder: Recorder) -> None:
+        """Strength takes its true value; stresses beyond it return at once; the clock starts."""
+        solver = self.solver
+        solver.set_damping()
+        solver.set_gravity(0.0, -self.scene.gravity)
+        solver.reset_clock()
+        solver.set_materials(self.scene.materials)
+        released = solver.release_stress()
+        recorder.release(released, self.settling_time, self.settling_ratio)
+
+    def slide(self, recorder: Recorder) -> None:
+        """The slope slides, until its kinetic energy has fallen to `rest_ratio` of its peak."""
+        slide = self.stages.slide
+        recorder.start("slide", slide.duration)
+        peak = 0.0
+        while self.solver.time < slide.duration:
+            until = min(recorder.next_time(), slide.duration)
+            kinetic = recorder.advance(until)["kinetic"]
+            peak = max(peak, kinetic)
+            if kinetic < slide.rest_ratio * peak:
+                recorder.detail = f"at rest after {self.solver.time:.6g} s"
+                return
+        recorder.detail = f"slid for {self.solver.time:.6g} s"
+
+    def _crossing_time(self) -> float:
+        left, bottom, right, top = self.scene.outline.bounds
+        slowest = min(material.wave_speed for material in self.scene.materials)
+        return 2 * math.hypot(right - left, top - bottom) / slowest
+
+    def _lowest_potential(self) -> float:
+        mass = float(self.scene.points.mass.sum())
+        return mass * self.scene.gravity * self.scene.outline.bounds[1]
+
+
+class Recorder:
+    """Advances a simulation and writes what happens: energy rows, snapshots, progress, the end."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        output: str | PathLike[str],
+        *,
+        overwrite: bool,
+        energy_interval: float,
+        snapshot_interval: float,
+        snapshot_times: Sequence[float],
+        progress: bool,
+    ) -> None:
+        self.energy_interval = _check.positive("energy_interval", energy_interval)
+        self.detail = ""
+        self._simulation = simulation
+        self._solver = simulation.solver
+        self._progress = _check.flag("progress", progress)
+        self._snapshot_times = _times(
+            simulation.stages.slide.duration,
+            _check.positive("snapshot_interval", snapshot_interval),
+            [_check.not_negative("snapshot_times", time) for time in snapshot_times],
+        )
+        self._stage = 0
+        self._bar: tqdm[Any] | None = None
+        self._rows: list[dict[str, float]] = []
+        self._next_energy = 0.0
+        self._seconds = 0.0
+        self._steps = 0
+        self._flushed = clock.monotonic()
+        self._writer = RunWriter(
+            Path(output),
+            scene_json=json.dumps(simulation.scene.to_dict()),
+            method_json=json.dumps(simulation.method.to_dict()),
+            stages_json=json.dumps(simulation.stages.to_dict()),
+            version=version("gimpslope"),
+            instruction_set=self._solver.instruction_set,
+            threads=self._solver.threads,
+            overwrite=overwrite,
+        )
+        self._write_points()
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: Any) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        if kind is None:
+            self._finish("finished", self.detail)
+        elif issubclass(kind, KeyboardInterrupt):
+            self._finish("interrupted", f"stopped by the user at {self._solver.time:.6g} s")
+        else:
+            self._finish("failed", f"{kind.__name__}: {error}")
+
+    def start(self, stage: str, duration: float) -> None:
+        """Begin the rows and the bar of a stage that lasts at most `duration` seconds."""
+        self._stage = STAGES.index(stage)
+        if self._bar is not None:
+            self._bar.close()
+        self._bar = tqdm(
+            total=duration,
+            desc=f"{stage:8}",
+            disable=not self._progress,
+            bar_format="{desc} {percentage:3.0f}%|{bar}| {n:.2f} of {total:.2f} s "
+            "[{elapsed}<{remaining}{postfix}]",
+        )
+        self._bar_start = self._solver.time
+        self._row()
+        if stage == "slide":
+            self._snapshot_if_due()
+
+    def next_time(self) -> float:
+        """When the next row or snapshot of the slide is due, s."""
+        due = self._next_energy
+        return min(due, self._snapshot_times[0]) if self._snapshot_times else due
+
+    def advance(self, until: float) -> dict[str, float]:
+        """Step to the time `until` and record what is due; the energies then."""
+        steps = self._solver.steps
+        with self._timed():
+            try:
+                self._solver.advance_to(until)
+            finally:
+                self._steps += self._solver.steps - steps
+        row = self._row()
+        if STAGES[self._stage] == "slide":
+            self._snapshot_if_due()
+        if clock.monotonic() - self._flushed > _FLUSH_INTERVAL:
+            self._flush()
+        self._show()
+        return row
+
+    def release(self, energy: float, settling_time: float, settling_ratio: float) -> None:
+        """Record the trigger: the points now are the reference of all displacements."""
+        self._next_energy = 0.0
+        self._write_points()
+        self._writer.write_trigger(
+            energy_released=energy, settling_time=settling_time, settling_ratio=settling_ratio
+        )
+
+    def _row(self) -> dict[str, float]:
+        energies = self._solver.energies()
+        row = {
+            "stage": self._stage,
+            "time": self._solver.time,
+            "step": self._solver.steps,
+            **energies._asdict(),
+        }
+        self._rows.append(row)
+        self._next_energy = self._solver.time + self.energy_interval
+        return row
+
+    def _snapshot_if_due(self) -> None:
+        due = False
+        while self._snapshot_times and self._snapshot_times[0] <= self._solver.time * (1 + 1e-12):
+            self._snapshot_times.pop(0)
+            due = True
+        if due:
+            self._hand_over_rows()
+            self._writer.append_snapshot(self._solver.time, self._fields())
+            self._flushed = clock.monotonic()
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: getattr(self._solver, name) for name in FIELDS}
+
+    def _write_points(self) -> None:
+        solver, scene = self._solver, self._simulation.scene
+        names = ["soil", "stone"][: len(scene.materials)]
+        self._writer.write_points(
+            solver.position,
+            solver.mass,
+            solver.volume,
+            scene.points.half_length,
+            solver.material,
+            names,
+        )
+
+    def _hand_over_rows(self) -> None:
+        if self._rows:
+            rows, self._rows = self._rows, []
+            self._writer.append_energy({name: np.array([r[name] for r in rows]) for name in rows[0]})
+
+    def _flush(self) -> None:
+        self._hand_over_rows()
+        self._writer.flush()
+        self._flushed = clock.monotonic()
+
+    def _finish(self, status: str, detail: str) -> None:
+        self._hand_over_rows()
+        if STAGES[self._stage] == "slide":
+            self._writer.write_final(self._solver.time, self._fields())
+        self._writer.write_timing(self._seconds, self._steps * len(self._solver))
+        self._writer.finish(status, detail, summarise(Run(self._writer.path)))
+
+    def _show(self) -> None:
+        if self._bar is not None and not self._bar.disable:
+            rate = self._steps * len(self._solver) / max(self._seconds, 1e-9) / 1e6
+            self._bar.set_postfix_str(f"{rate:.1f} M point-steps/s", refresh=False)
+            self._bar.update(self._solver.time - self._bar_start - self._bar.n)
+
+    @contextmanager
+    def _timed(self) -> Iterator[None]:
+        start = clock.perf_counter()
+        try:
+            yield
+        finally:
+            self._seconds += clock.perf_counter() - start
+
+
+def _times(duration: float, interval: float, further: Sequence[float]) -> list[float]:
+    """All times of snapshots within the duration, in order: every interval, further ones, the end."""
+    regular = np.arange(0.0, duration, interval)
+    every = np.concatenate([regular, np.asarray(further, dtype=float), [duration]])
+    rounded: list[float] = np.unique(np.round(every[every <= duration], 9)).tolist()
+    return rounded

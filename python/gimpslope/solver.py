@@ -1,0 +1,297 @@
+"""The solver: material points on a background grid, stepped by the compiled kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _check, _core
+from ._check import FloatArray
+from .materials import Material
+from .method import Method
+from .scene import Points, Scene
+from .walls import Free, Walls
+
+Diverged = _core.Diverged
+
+_ALL_FREE = Walls(Free(), Free(), Free(), Free())
+
+
+class Energies(NamedTuple):
+    """Energies a metre out of the plane, J/m, and the speed of the fastest point, m/s."""
+
+    kinetic: float
+    potential: float
+    elastic: float
+    max_speed: float
+
+
+class Solver:
+    """Material points and their stepping; `Solver.of(scene, method)` makes one from a scene.
+
+    Arrays go in and come out in the order in which the points were given. The kernel keeps its
+    points sorted by cell: `view` and `numbers` show them as they lie in memory.
+
+    Parameters
+    ----------
+    points : the material points
+    materials : those that `points.material` counts
+    cell : side of a grid cell, m
+    walls : conditions on the four sides; free where left out
+    wall_positions : x of the left and right, y of the bottom and top wall, m, on grid lines;
+        needed with walls
+    origin : a node of the grid (x, y), m
+    velocity : m/s, shape (n, 2); at rest where left out
+    stress : xx, yy, zz, xy, tension positive, Pa, shape (n, 4); zero where left out
+    gravity : acceleration (x, y), m/s2
+    method : how the motion is computed
+    instruction_set : one of `gimpslope.kernel.instruction_sets()`; the fastest where left out
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is of the wrong type, shape or range, or the time step is above the stable
+        limit and the method does not allow that.
+    """
+
+    def __init__(
+        self,
+        points: Points,
+        materials: Sequence[Material],
+        *,
+        cell: float,
+        walls: Walls = _ALL_FREE,
+        wall_positions: Sequence[float] | None = None,
+        origin: tuple[float, float] = (0.0, 0.0),
+        velocity: npt.ArrayLike | None = None,
+        stress: npt.ArrayLike | None = None,
+        gravity: tuple[float, float] = (0.0, 0.0),
+        method: Method | None = None,
+        instruction_set: str = "",
+    ) -> None:
+        if wall_positions is None and walls != _ALL_FREE:
+            raise ValueError(f"wall_positions must be given with walls, got None with {walls}")
+        n = len(points)
+        at_rest = np.zeros((n, 2))
+        method = Method() if method is None else method
+        self._core = _core.Solver(
+            points.position,
+            at_rest if velocity is None else _check.array("velocity", velocity, (n, 2)),
+            points.half_length,
+            points.mass,
+            points.volume,
+            points.material,
+            [material.to_core() for material in materials],
+            cell=cell,
+            origin=origin,
+            walls=walls.to_core((0.0,) * 4 if wall_positions is None else wall_positions),
+            instruction_set=instruction_set,
+            **method.to_core(),
+        )
+        self._core.set_gravity(*gravity)
+        if stress is not None:
+            self.stress = np.asarray(stress)
+
+    @classmethod
+    def of(
+        cls,
+        scene: Scene,
+        method: Method | None = None,
+        *,
+        elastic: bool = False,
+        instruction_set: str = "",
+    ) -> Solver:
+        """The points of a scene at rest, under its full gravity.
+
+        With `elastic` the materials are without their yield surfaces, as they are until a slope is
+        let go.
+        """
+        return cls(
+            scene.points,
+            [m.elastic() for m in scene.materials] if elastic else scene.materials,
+            cell=scene.cell,
+            walls=scene.walls,
+            wall_positions=scene.wall_positions,
+            origin=scene.origin,
+            gravity=(0.0, -scene.gravity),
+            method=method,
+            instruction_set=instruction_set,
+        )
+
+    def step(self) -> None:
+        """Take one step."""
+        self._core.advance(1)
+
+    def advance(self, steps: int) -> None:
+        """Take `steps` steps. Other Python threads run meanwhile, and Ctrl-C stops within a second.
+
+        Raises
+        ------
+        Diverged
+            If a point would move by more than half a cell in one step, or is no longer finite.
+            The error names step, time, point and the likely cause.
+        """
+        self._core.advance(_check.whole("steps", steps, 0))
+
+    def advance_to(self, time: float) -> None:
+        """Step until `time` (s). With a Courant number the last steps are shortened to end there;
+        with a fixed step the first one that reaches it is the last. Raises as `advance` does."""
+        self._core.advance_to(_check.finite("time", time))
+
+    def set_gravity(self, x: float, y: float, ramp: float = 0.0) -> None:
+        """Acceleration (x, y), m/s2, which grows linearly over the first `ramp` seconds."""
+        self._core.set_gravity(x, y, ramp)
+
+    def set_damping(self, local: float = 0.0, kinetic: bool = False) -> None:
+        """Damping: `local` takes that share, in [0, 1), of each nodal force against the node's
+        velocity (Cundall 1987); `kinetic` sets all velocities to zero whenever the kinetic energy
+        has passed a peak."""
+        self._core.set_damping(local, kinetic)
+
+    def set_materials(self, materials: Sequence[Material]) -> None:
+        """Replace the materials, one for each of before; the stresses stay as they are."""
+        self._core.set_materials([material.to_core() for material in materials])
+
+    def release_stress(self) -> float:
+        """Return all stresses to the yield surfaces; the elastic energy released, J/m."""
+        return self._core.release_stress()
+
+    def reset_clock(self) -> None:
+        """Set time, steps and plastic strain to zero."""
+        self._core.reset_clock()
+
+    def energies(self) -> Energies:
+        """Kinetic, potential (zero at the origin of the coordinates, under full gravity) and elastic
+        energy, J/m, and the largest speed, m/s."""
+        return Energies(**self._core.energies())
+
+    def view(self, name: str) -> FloatArray:
+        """A field in storage order without a copy, read-only: it shows the present state for as long
+        as it lives, and the order changes whenever the kernel sorts its points. `numbers` says
+        which points they are.
+
+        Names: position, velocity (n, 2); stress (n, 4); volume, mass, plastic_strain (n,);
+        half_length (n, 2), not with shape "linear"; deformation_gradient (n, 4) as xx, xy, yx, yy,
+        with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
+        """
+        return self._core.view(name)
+
+    @property
+    def numbers(self) -> npt.NDArray[np.int32]:
+        """Place in the given order of each stored point, shape (n,); a view like those of `view`."""
+        return self._core.numbers()
+
+    @property
+    def position(self) -> FloatArray:
+        """m, shape (n, 2)."""
+        return self._core.get("position")
+
+    @position.setter
+    def position(self, values: npt.ArrayLike) -> None:
+        self._set("position", values, 2)
+
+    @property
+    def velocity(self) -> FloatArray:
+        """m/s, shape (n, 2)."""
+        return self._core.get("velocity")
+
+    @velocity.setter
+    def velocity(self, values: npt.ArrayLike) -> None:
+        self._set("velocity", values, 2)
+
+    @property
+    def stress(self) -> FloatArray:
+        """xx, yy, zz, xy, tension positive, Pa, shape (n, 4)."""
+        return self._core.get("stress")
+
+    @stress.setter
+    def stress(self, values: npt.ArrayLike) -> None:
+        self._set("stress", values, 4)
+
+    @property
+    def volume(self) -> FloatArray:
+        """Area in the plane, m2, shape (n,)."""
+        return self._core.get("volume")
+
+    @property
+    def mass(self) -> FloatArray:
+        """kg/m, shape (n,)."""
+        return self._core.get("mass")
+
+    @property
+    def density(self) -> FloatArray:
+        """kg/m3, shape (n,)."""
+        density: FloatArray = self.mass / self.volume
+        return density
+
+    @property
+    def plastic_strain(self) -> FloatArray:
+        """Equivalent plastic strain, the sum of sqrt(2/3 de_p:de_p) of the deviatoric increments,
+        shape (n,)."""
+        return self._core.get("plastic_strain")
+
+    @property
+    def half_length(self) -> FloatArray:
+        """Half-lengths of the GIMP domains, m, shape (n, 2)."""
+        return self._core.get("half_length")
+
+    @property
+    def material(self) -> npt.NDArray[np.int32]:
+        """Index into the materials, shape (n,)."""
+        return self._core.material()
+
+    @property
+    def time(self) -> float:
+        """s."""
+        return self._core.time
+
+    @property
+    def steps(self) -> int:
+        """Steps taken since the clock was set to zero."""
+        return self._core.steps
+
+    @property
+    def time_step(self) -> float:
+        """The next time step, s."""
+        return self._core.time_step
+
+    @property
+    def stable_time_step(self) -> float:
+        """The largest step that is stable in the present state, s.
+
+        2 / omega, with omega bounded by the frequency of a single point between its nodes (Irons
+        and Treharne 1971).
+        """
+        return self._core.stable_time_step
+
+    @property
+    def alpha(self) -> float:
+        """Share of PIC in the next step."""
+        return self._core.alpha
+
+    @property
+    def threads(self) -> int:
+        """Number of threads."""
+        return self._core.threads
+
+    @property
+    def instruction_set(self) -> str:
+        """The instruction set the kernel runs on."""
+        return self._core.instruction_set
+
+    @property
+    def bytes(self) -> int:
+        """Memory of points and grid, bytes."""
+        return self._core.bytes
+
+    def __len__(self) -> int:
+        return self._core.size
+
+    def __repr__(self) -> str:
+        return f"<Solver of {len(self)} points at {self.time:.6g} s after {self.steps} steps>"
+
+    def _set(self, name: str, values: npt.ArrayLike, components: int) -> None:
+        self._core.set(name, _check.array(name, values, (len(self), components)))

@@ -1,0 +1,100 @@
+"""The same scene gives the same bits, however it is stepped."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from kernel_scene import sliding, solver
+from numpy.typing import NDArray
+
+from gimpslope import _core
+
+State = dict[str, NDArray[np.float64]]
+
+FIELDS = ("position", "velocity", "stress", "volume", "plastic_strain")
+STEPS = 300
+
+
+def state(stepped: _core.Solver) -> State:
+    return {name: stepped.get(name) for name in FIELDS} | {"time": np.array(stepped.time)}
+
+
+def after(steps: int = STEPS, **options: Any) -> State:
+    stepped = solver(sliding(), **options)
+    stepped.advance(steps)
+    return state(stepped)
+
+
+def assert_identical(a: State, b: State) -> None:
+    for name in a:
+        np.testing.assert_array_equal(a[name], b[name], err_msg=name)
+
+
+@pytest.fixture(scope="module")
+def expected() -> State:
+    return after(threads=1)
+
+
+def test_scene_slides_across_slabs_and_sorts(expected: State) -> None:
+    start = sliding()["position"]
+    assert np.ptp(start[:, 1]) > 12 * sliding()["cell"]
+    assert np.abs(expected["position"] - start).max() > 2 * sliding()["cell"]
+    assert (expected["plastic_strain"] > 0).mean() > 0.3
+
+
+def test_run_to_run(expected: State) -> None:
+    assert_identical(after(threads=1), expected)
+
+
+@pytest.mark.skipif(not _core.openmp(), reason="this build has one thread")
+@pytest.mark.parametrize("threads", [2, 3, 4])
+def test_any_number_of_threads(expected: State, threads: int) -> None:
+    assert_identical(after(threads=threads), expected)
+
+
+def test_steps_taken_one_by_one(expected: State) -> None:
+    stepped = solver(sliding())
+    for _ in range(STEPS):
+        stepped.advance(1)
+    assert_identical(state(stepped), expected)
+
+
+def test_reading_between_steps_changes_nothing(expected: State) -> None:
+    stepped = solver(sliding())
+    for _ in range(STEPS // 10):
+        stepped.advance(10)
+        stepped.energies()
+        stepped.set("velocity", stepped.get("velocity"))
+    found = state(stepped)
+    for name in found:
+        np.testing.assert_allclose(
+            found[name], expected[name], rtol=0, atol=1e-9 * np.abs(expected[name]).max()
+        )
+
+
+def test_solvers_do_not_touch_each_other(expected: State) -> None:
+    other = sliding() | {"gravity": (-1.0, -5.0, 0.0), "shape": "linear"}
+    alone = solver(other)
+    alone.advance(STEPS)
+    first, second = solver(sliding()), solver(other)
+    for _ in range(STEPS // 5):
+        first.advance(5)
+        second.advance(5)
+    assert_identical(state(first), expected)
+    assert_identical(state(second), state(alone))
+
+
+@pytest.mark.parametrize("instruction_set", _core.instruction_sets())
+@pytest.mark.parametrize("shape", ["linear", "ugimp"])
+def test_instruction_sets_agree(shape: str, instruction_set: str) -> None:
+    reference = after(shape=shape, instruction_set=_core.instruction_sets()[0])
+    found = after(shape=shape, instruction_set=instruction_set)
+    for name in found:
+        scale = np.abs(reference[name]).max()
+        assert np.abs(found[name] - reference[name]).max() <= 1e-9 * scale, name
+
+
+def test_default_instruction_set_is_the_fastest() -> None:
+    assert solver(sliding(8, 8)).instruction_set == _core.instruction_sets()[-1]
