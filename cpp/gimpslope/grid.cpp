@@ -15,8 +15,9 @@ constexpr const char* kSideNames[] = {"left wall", "right wall", "bottom wall", 
 
 Grid::Grid(double cell, double x, double y, const std::array<Wall, 4>& walls)
     : cell_(cell), x_(x), y_(y), walls_(walls) {
-  require(std::isfinite(cell) && cell > 0.0, "cell", cell, "positive and finite (m)");
-  require(std::isfinite(x) && std::isfinite(y), "origin", x, "finite (m)");
+  require(std::isfinite(cell) && cell > 0.0, "cell", cell, "positive and finite, in m");
+  for (const double coordinate : {x, y})
+    require(std::isfinite(coordinate), "origin", coordinate, "finite, in m");
   for (const Side side : {left, right, bottom, top}) {
     const Wall& wall = walls[side];
     const bool low = side == left || side == bottom;
@@ -29,17 +30,23 @@ Grid::Grid(double cell, double x, double y, const std::array<Wall, 4>& walls)
             "zero or positive and finite at a wall");
     const double line = (wall.position - (side == left || side == right ? x : y)) / cell;
     require(std::isfinite(line) && std::abs(line - std::round(line)) < 1e-6, kSideNames[side],
-            wall.position, "on a grid line: a whole number of cells from the origin (m)");
+            wall.position, "on a grid line, a whole number of cells from the origin, in m");
     wall_node_[side] = static_cast<std::int32_t>(std::lround(line));
+  }
+  for (const Side low : {left, bottom}) {
+    const Side high = low == left ? right : top;
+    require(wall_node_[low] < wall_node_[high], kSideNames[high], walls[high].position,
+            "beyond the opposite wall");
   }
 }
 
 void Grid::fit(Cell low, Cell high) {
   const std::int64_t columns = std::int64_t{high.column} - low.column + 1;
   const std::int64_t rows = std::int64_t{high.row} - low.row + 1;
-  constexpr std::int64_t most = std::numeric_limits<std::int32_t>::max() / 4;
-  require(columns * rows <= most, "nodes", columns * rows,
-          "fewer than 2^29: the points are spread too far apart for this cell size");
+  constexpr std::int64_t most = std::int64_t{1} << 25;  // 4 GiB
+  require(columns * rows <= most, "position",
+          std::to_string(columns) + " x " + std::to_string(rows),
+          "spread over at most 2^25 cells; with this cell size the points cover too wide a box");
   low_ = low;
   columns_ = static_cast<int>(columns);
   rows_ = static_cast<int>(rows);

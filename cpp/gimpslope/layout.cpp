@@ -19,8 +19,10 @@ std::vector<Cell> first_cells(const Points& points, const Grid& grid, double hal
     const double column = std::floor((points.motion[4 * k] - lx - grid.x()) / grid.cell());
     const double row = std::floor((points.motion[4 * k + 1] - ly - grid.y()) / grid.cell());
     constexpr double farthest = 1e9;
-    require(std::abs(column) < farthest && std::abs(row) < farthest, "position",
-            points.motion[4 * k], "finite and within 1e9 cells of the origin");
+    require(std::abs(column) < farthest, "position", points.motion[4 * k],
+            "within 1e9 cells of the origin");
+    require(std::abs(row) < farthest, "position", points.motion[4 * k + 1],
+            "within 1e9 cells of the origin");
     cells[k] = {static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)};
   }
   return cells;

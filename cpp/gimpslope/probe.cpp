@@ -42,13 +42,14 @@ ShapeValues evaluate_all(std::span<const double> position, std::span<const doubl
 ShapeValues shape_functions(ShapeKind kind, std::span<const double> position,
                             std::span<const double> half_length, double cell,
                             std::array<double, 2> origin) {
-  require(cell > 0.0 && std::isfinite(cell), "cell", cell, "positive and finite (m)");
-  for (const double x : position) require(std::isfinite(x), "position", x, "finite (m)");
+  require(cell > 0.0 && std::isfinite(cell), "cell", cell, "positive and finite, in m");
+  for (const double x : origin) require(std::isfinite(x), "origin", x, "finite, in m");
+  for (const double x : position) require(std::isfinite(x), "position", x, "finite, in m");
   if (kind == ShapeKind::linear) return evaluate_all<Linear>(position, half_length, cell, origin);
   double widest = 0.0;
   for (const double l : half_length) {
-    require(l > 0.0 && 2.0 * l / cell <= WideGimp::widest, "half_length", l,
-            "positive and at most 1.5 cells (m)");
+    require(l > 0.0 && 2.0 * l / cell <= WideGimp::widest * (1.0 + 1e-12), "half_length", l,
+            "positive and at most 1.5 cells, in m");
     widest = std::max(widest, 2.0 * l / cell);
   }
   return widest <= Gimp::widest ? evaluate_all<Gimp>(position, half_length, cell, origin)

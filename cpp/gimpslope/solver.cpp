@@ -40,9 +40,9 @@ void check_values(std::span<const double> values, std::size_t count, bool positi
   }
 }
 
-const InitialPoints& checked(const InitialPoints& p, std::size_t materials, const Method& method) {
-  const std::size_t n = p.mass.size();
-  require(n > 0 && n < (1u << 29), "mass", std::to_string(n) + " values", "1 to 2^29 points");
+void check(const InitialPoints& p, std::size_t materials, const Method& method) {
+  const std::size_t n = p.position.size() / 2;
+  require(n > 0 && n < (1u << 29), "position", std::to_string(n) + " points", "1 to 2^29 points");
   check_values(p.position, 2 * n, false, "position");
   check_values(p.velocity, 2 * n, false, "velocity");
   check_values(p.half_length, 2 * n, method.shape != ShapeKind::linear, "half_length");
@@ -53,7 +53,14 @@ const InitialPoints& checked(const InitialPoints& p, std::size_t materials, cons
   const std::string rule = "an index into the " + std::to_string(materials) + " materials";
   for (const int m : p.material)
     require(m >= 0 && static_cast<std::size_t>(m) < materials, "material", m, rule.c_str());
-  return p;
+}
+
+/// Room for the points, once they are known to be sound.
+Points room_for(const InitialPoints& given, std::size_t materials, const Method& method,
+                double cell) {
+  check(given, materials, method);
+  return Points(static_cast<int>(given.mass.size()), own_domains(given, method, cell),
+                keeps_deformation(method));
 }
 
 const Method& checked(const Method& m) {
@@ -66,10 +73,10 @@ const Method& checked(const Method& m) {
       require(b >= 0.0 && b <= 1.0, "alpha", b, "in [0, 1]");
       break;
     case Blend::Kind::viscosity:
-      require(b >= 0.0 && std::isfinite(b), "viscosity", b, "zero or positive and finite (m2/s)");
+      require(b >= 0.0 && std::isfinite(b), "viscosity", b, "zero or positive and finite, in m2/s");
       break;
     case Blend::Kind::relaxation_time:
-      require(b > 0.0 && std::isfinite(b), "relaxation_time", b, "positive and finite (s)");
+      require(b > 0.0 && std::isfinite(b), "relaxation_time", b, "positive and finite, in s");
       break;
   }
 #ifdef _OPENMP
@@ -112,11 +119,11 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
       materials_(std::move(materials)),
       laws_(laws_of(materials_)),
       grid_(cell, origin[0], origin[1], walls),
-      points_(static_cast<int>(checked(given, laws_.size(), method).mass.size()),
-              own_domains(given, method, cell), keeps_deformation(method)) {
+      points_(room_for(given, laws_.size(), method, cell)) {
   fill(given);
   choose_kernel();
   set_time_step(method.time_step);
+  prepare();
 }
 
 void Solver::fill(const InitialPoints& given) {
@@ -153,7 +160,8 @@ void Solver::choose_kernel() {
   } else {
     basis_ = width_ <= widest(Basis::gimp_own) ? Basis::gimp_own : Basis::gimp_wide;
   }
-  require(width_ <= widest(basis_) || basis_ == Basis::linear, "half_length",
+  constexpr double rounding = 1.0 + 1e-12;
+  require(width_ <= widest(basis_) * rounding || basis_ == Basis::linear, "half_length",
           0.5 * width_ * grid_.cell(), "at most 1.5 cells");
   kernel_ = find_kernel(instruction_set_, method_.scheme, basis_);
   sorted_ = nodes_ready_ = false;
@@ -184,7 +192,14 @@ bool Solver::advance_to(double time, std::int64_t most) {
 void Solver::prepare() {
   if (!sorted_) {
     const int nodes = method_.shape == ShapeKind::cpgimp ? reach(Basis::gimp_wide) : reach(basis_);
-    layout_ = arrange(points_, grid_, half_length_, nodes, static_cast<int>(laws_.size()));
+    try {
+      layout_ = arrange(points_, grid_, half_length_, nodes, static_cast<int>(laws_.size()));
+    } catch (const std::invalid_argument& scattered) {
+      if (steps_ == 0) throw;
+      std::ostringstream message;
+      message << "step " << steps_ << ", t = " << time_ << " s: " << scattered.what();
+      throw Diverged(message.str(), steps_, time_, -1);
+    }
     reports_.resize(layout_.slabs.size());
     speeds_.resize(layout_.slabs.size());
     travel_ = 0.0;
@@ -275,10 +290,10 @@ void Solver::damp_at_peak() {
 }
 
 void Solver::set_gravity(const Gravity& gravity) {
-  require(std::isfinite(gravity.x) && std::isfinite(gravity.y), "gravity", gravity.y,
-          "finite (m/s2)");
+  for (const double g : {gravity.x, gravity.y})
+    require(std::isfinite(g), "gravity", g, "finite, in m/s2");
   require(gravity.ramp >= 0.0 && std::isfinite(gravity.ramp), "ramp", gravity.ramp,
-          "zero or positive and finite (s)");
+          "zero or positive and finite, in s");
   gravity_ = gravity;
 }
 
@@ -289,27 +304,32 @@ void Solver::set_damping(const Damping& damping) {
 }
 
 void Solver::set_time_step(const TimeStep& step) {
-  const bool fixed = step.kind == TimeStep::Kind::fixed;
-  require(step.value > 0.0 && std::isfinite(step.value), fixed ? "time_step" : "courant",
-          step.value, "positive and finite");
-  if (!method_.allow_unstable) {
-    const double limit = fixed ? stable_time_step() : courant_limit();
-    std::ostringstream rule;
-    rule.precision(6);
-    rule << "at most " << limit << (fixed ? " s" : "")
-         << ", the stable limit of this scene, unless allow_unstable is set";
-    require(step.value <= limit, fixed ? "time_step" : "courant", step.value, rule.str().c_str());
-  }
+  check_step(step, materials_);
   method_.time_step = step;
+}
+
+void Solver::check_step(const TimeStep& step, const std::vector<Material>& materials) const {
+  const bool fixed = step.kind == TimeStep::Kind::fixed;
+  const char* name = fixed ? "time_step" : "courant";
+  require(step.value > 0.0 && std::isfinite(step.value), name, step.value, "positive and finite");
+  if (fixed) alpha_of(step.value);
+  const double limit = fixed ? stable_time_step_of(materials) : courant_limit_of(materials);
+  if (method_.allow_unstable || step.value <= limit) return;
+  std::ostringstream rule;
+  rule.precision(6);
+  rule << "at most " << limit << (fixed ? " s" : "")
+       << ", the stable limit of this scene, unless allow_unstable is set";
+  refuse(name, step.value, rule.str());
 }
 
 void Solver::set_materials(std::vector<Material> materials) {
   require(materials.size() == materials_.size(), "materials",
           std::to_string(materials.size()) + " materials",
           ("a list of " + std::to_string(materials_.size())).c_str());
-  laws_ = laws_of(materials);
+  std::vector<Law> laws = laws_of(materials);
+  check_step(method_.time_step, materials);
+  laws_ = std::move(laws);
   materials_ = std::move(materials);
-  set_time_step(method_.time_step);
 }
 
 double Solver::release_stress() {
@@ -371,16 +391,16 @@ double Solver::narrowest_width() const {
   return 2.0 * *std::min_element(l.begin(), l.end()) / grid_.cell();
 }
 
-double Solver::courant_limit() const {
+double Solver::courant_limit_of(const std::vector<Material>& materials) const {
   double limit = std::numeric_limits<double>::infinity();
-  for (const Material& m : materials_)
+  for (const Material& m : materials)
     limit = std::min(limit, gimpslope::courant_limit(method_.shape, narrowest_width(), m.poisson));
   return limit;
 }
 
-double Solver::stable_time_step() const {
-  std::vector<double> per_material;
-  for (const Material& m : materials_)
+double Solver::stable_time_step_of(const std::vector<Material>& materials) const {
+  std::vector<double> per_material;  // times the root of the wave modulus
+  for (const Material& m : materials)
     per_material.push_back(gimpslope::courant_limit(method_.shape, narrowest_width(), m.poisson) *
                            grid_.cell() / std::sqrt(m.wave_modulus()));
   double limit = std::numeric_limits<double>::infinity();
@@ -392,15 +412,13 @@ double Solver::stable_time_step() const {
 
 double Solver::alpha_of(double dt) const {
   const double alpha = method_.blend.alpha(dt, grid_.cell(), half_length_);
-  if (method_.blend.kind == Blend::Kind::alpha) return alpha;
+  if (alpha <= 1.0) return alpha;
   const bool viscosity = method_.blend.kind == Blend::Kind::viscosity;
   std::ostringstream rule;
   rule << (viscosity ? "at most " : "at least ") << (viscosity ? method_.blend.value / alpha : dt)
        << (viscosity ? " m2/s" : " s") << " at a step of " << dt
-       << " s: the PIC share of a step would be above 1";
-  require(alpha <= 1.0, viscosity ? "viscosity" : "relaxation_time", method_.blend.value,
-          rule.str().c_str());
-  return alpha;
+       << " s, where the PIC share of a step reaches 1";
+  refuse(viscosity ? "viscosity" : "relaxation_time", method_.blend.value, rule.str());
 }
 
 FieldView Solver::field(const std::string& name) {

@@ -79,9 +79,9 @@ class Solver {
   double cell() const { return grid_.cell(); }
   int threads() const { return method_.threads; }
   InstructionSet instruction_set() const { return instruction_set_; }
-  double time_step();                               // the next one, s
-  double stable_time_step() const;                  // the largest stable one at present, s
-  double courant_limit() const;                     // the same as a Courant number
+  double time_step();                                                          // the next one, s
+  double stable_time_step() const { return stable_time_step_of(materials_); }  // at present, s
+  double courant_limit() const { return courant_limit_of(materials_); }
   double alpha() { return alpha_of(time_step()); }  // share of PIC in the next step
   std::int64_t bytes() const;
 
@@ -94,6 +94,9 @@ class Solver {
   [[noreturn]] void fail(int lost, double dt);
   void follow_width(double width);
   void damp_at_peak();
+  void check_step(const TimeStep& step, const std::vector<Material>& materials) const;
+  double stable_time_step_of(const std::vector<Material>& materials) const;
+  double courant_limit_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
   double narrowest_width() const;
 

@@ -76,7 +76,7 @@ struct StepInput {
 /// What a slab reports of a step. Maxima do not depend on the order of the slabs.
 struct Report {
   double travel = 0.0;     // largest displacement of a point, cells
-  double growth = 0.0;     // largest change of a half-length, cells
+  double growth = 0.0;     // largest change of a half-length, cells; the two add up at an edge
   double width = 0.0;      // largest domain width, cells
   std::int32_t lost = -1;  // storage index of a point that moved or grew beyond the limit
 };

@@ -1,9 +1,11 @@
 // One function a subject, each in a file of its own; names of options as Python gives them.
 #pragma once
 
+#include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
 #include <initializer_list>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -29,3 +31,24 @@ Value parse(const char* parameter, const std::string& text,
   }
   gimpslope::refuse(parameter, text, rule.str());
 }
+
+using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
+
+/// The values of an array of shape (n) or, with more than one component, (n, components).
+inline std::span<const double> values_of(const Doubles& array, const char* parameter, py::ssize_t n,
+                                         py::ssize_t components) {
+  const bool vector = components == 1 && array.ndim() == 1;
+  const bool matrix = components > 1 && array.ndim() == 2 && array.shape(1) == components;
+  if (!(vector || matrix) || array.shape(0) != n) {
+    std::ostringstream rule;
+    rule << "an array of shape (" << n << ", ";
+    if (components > 1) rule << components;
+    rule << ")";
+    gimpslope::refuse(parameter, "shape " + py::cast<std::string>(py::str(array.attr("shape"))),
+                      rule.str());
+  }
+  return {array.data(), static_cast<std::size_t>(array.size())};
+}
+
+/// The number of points in an array that ought to have one row a point.
+inline py::ssize_t rows_of(const py::array& array) { return array.ndim() > 0 ? array.shape(0) : 0; }

@@ -1,4 +1,3 @@
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -11,27 +10,15 @@ using namespace gimpslope;
 
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-
-void check_shape(const Doubles& array, const char* parameter, py::ssize_t columns) {
-  const bool matrix = array.ndim() == 2 && array.shape(1) == columns;
-  require(matrix, parameter, py::cast<std::string>(py::str(array.attr("shape"))),
-          ("an array of shape (n, " + std::to_string(columns) + ")").c_str());
-}
-
 py::tuple evaluate_shape(const std::string& shape, const Doubles& position,
                          const Doubles& half_length, double cell, std::array<double, 2> origin) {
-  check_shape(position, "position", 2);
-  check_shape(half_length, "half_length", 2);
-  require(position.shape(0) == half_length.shape(0), "half_length", half_length.shape(0),
-          "as many rows as position");
   const auto kind = parse<ShapeKind>(
       "shape", shape,
       {{"linear", ShapeKind::linear}, {"ugimp", ShapeKind::ugimp}, {"cpgimp", ShapeKind::cpgimp}});
-  const py::ssize_t n = position.shape(0);
-  const std::size_t count = static_cast<std::size_t>(n);
-  const ShapeValues found = shape_functions(kind, {position.data(), 2 * count},
-                                            {half_length.data(), 2 * count}, cell, origin);
+  const py::ssize_t n = rows_of(position);
+  const ShapeValues found =
+      shape_functions(kind, values_of(position, "position", n, 2),
+                      values_of(half_length, "half_length", n, 2), cell, origin);
   const py::ssize_t nodes = found.nodes;
   py::array_t<std::int64_t> index({n, nodes, py::ssize_t{2}});
   py::array_t<double> value({n, nodes}), gradient({n, nodes, py::ssize_t{2}});
@@ -42,8 +29,8 @@ py::tuple evaluate_shape(const std::string& shape, const Doubles& position,
 }
 
 py::tuple return_stress(const Material& material, const Doubles& stress) {
-  check_shape(stress, "stress", 4);
-  const py::ssize_t n = stress.shape(0);
+  const py::ssize_t n = rows_of(stress);
+  values_of(stress, "stress", n, 4);
   py::array_t<double> returned({n, py::ssize_t{4}}), plastic_strain(n);
   std::copy_n(stress.data(), 4 * n, returned.mutable_data());
   std::fill_n(plastic_strain.mutable_data(), n, 0.0);

@@ -1,6 +1,6 @@
-#include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "bind.hpp"
@@ -10,14 +10,21 @@ using namespace gimpslope;
 
 namespace {
 
-using Doubles = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Integers = py::array_t<std::int32_t, py::array::c_style | py::array::forcecast>;
 using WallTuple = std::tuple<std::string, double, double>;  // kind, friction, position
 using Choice = std::pair<std::string, double>;              // what a value means, the value
 
-template <class T>
-std::span<const T> span(const py::array_t<T, py::array::c_style | py::array::forcecast>& array) {
-  return {array.data(), static_cast<std::size_t>(array.size())};
+/// Indices of materials; numbers with a fraction are refused, not cut.
+std::vector<std::int32_t> indices(const py::array& given, py::ssize_t n) {
+  const char kind = given.dtype().kind();
+  if (given.ndim() != 1 || given.shape(0) != n || (kind != 'i' && kind != 'u')) {
+    refuse("material", py::cast<std::string>(py::repr(given)),
+           "an array of " + std::to_string(n) + " whole numbers");
+  }
+  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wide(given);
+  std::vector<std::int32_t> result(static_cast<std::size_t>(n));
+  for (py::ssize_t k = 0; k < n; ++k)
+    result[k] = static_cast<std::int32_t>(std::clamp<std::int64_t>(wide.at(k), -1, INT32_MAX));
+  return result;
 }
 
 Wall wall(const WallTuple& given) {
@@ -46,7 +53,7 @@ Blend blend(const Choice& given) {
 }
 
 Solver make(const Doubles& position, const Doubles& velocity, const Doubles& half_length,
-            const Doubles& mass, const Doubles& volume, const Integers& material,
+            const Doubles& mass, const Doubles& volume, const py::array& material,
             std::vector<Material> materials, double cell, std::array<double, 2> origin,
             const std::array<WallTuple, 4>& walls, const std::string& shape,
             const std::string& domain_update, const std::string& volume_update,
@@ -70,8 +77,12 @@ Solver make(const Doubles& position, const Doubles& velocity, const Doubles& hal
   method.time_step = time_step(step);
   method.threads = threads;
   method.allow_unstable = allow_unstable;
-  const InitialPoints points{span(position), span(velocity), span(half_length),
-                             span(mass),     span(volume),   span(material)};
+  const py::ssize_t n = rows_of(position);
+  const std::vector<std::int32_t> material_indices = indices(material, n);
+  const InitialPoints points{
+      values_of(position, "position", n, 2),       values_of(velocity, "velocity", n, 2),
+      values_of(half_length, "half_length", n, 2), values_of(mass, "mass", n, 1),
+      values_of(volume, "volume", n, 1),           material_indices};
   return Solver(points, std::move(materials), cell, origin,
                 {wall(walls[0]), wall(walls[1]), wall(walls[2]), wall(walls[3])}, method,
                 instruction_set.empty() ? available_instruction_sets().back()
@@ -197,7 +208,7 @@ void bind_solver(py::module_& m) {
       .def(
           "set",
           [](Solver& s, const std::string& name, const Doubles& given) {
-            s.set_values(name, span(given));
+            s.set_values(name, values_of(given, name.c_str(), s.size(), s.field(name).components));
           },
           py::arg("name"), py::arg("values"))
       .def("view", &window, py::arg("name"))

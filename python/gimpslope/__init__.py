@@ -1,7 +1,7 @@
 """Landslides of soil-rock slopes with the generalized interpolation material point method.
 
-A scene (outline, materials, walls) is simulated through its loading stages by a compiled kernel, and
-the run file is opened for analysis:
+A scene (outline, materials, walls) is simulated through its loading stages by a compiled kernel,
+and the run file is opened for analysis:
 
 >>> import gimpslope as gs
 >>> soil = gs.DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)

@@ -92,7 +92,9 @@ def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
 
 def _bench(options: argparse.Namespace) -> None:
     measurements = [
-        benchmark.measure(points, threads) for points in options.points for threads in options.threads
+        benchmark.measure(points, threads)
+        for points in options.points
+        for threads in options.threads
     ]
     print(benchmark.table(measurements))
     if options.json is not None:
@@ -120,7 +122,9 @@ def _parser() -> argparse.ArgumentParser:
         default="identified",
         help="how the paper is read where it is silent (default: %(default)s)",
     )
-    run.add_argument("--cell", type=float, default=0.1, metavar="H", help="m (default: %(default)s)")
+    run.add_argument(
+        "--cell", type=float, default=0.1, metavar="H", help="m (default: %(default)s)"
+    )
     run.add_argument(
         "--duration", type=float, default=10.0, metavar="S", help="of the slide, s (default: 10)"
     )
@@ -139,7 +143,9 @@ def _parser() -> argparse.ArgumentParser:
     bench.add_argument(
         "--points", type=int, nargs="+", default=[23_490], metavar="N", help="(default: 23490)"
     )
-    bench.add_argument("--threads", type=int, nargs="+", default=[1], metavar="N", help="(default: 1)")
+    bench.add_argument(
+        "--threads", type=int, nargs="+", default=[1], metavar="N", help="(default: 1)"
+    )
     bench.add_argument("--json", metavar="FILE", help="write the measurements as JSON")
 
     info = commands.add_parser("info", help="show version and instruction sets")

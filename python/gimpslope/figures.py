@@ -30,7 +30,7 @@ _SOIL = "#dcb98a"
 _PAPER = "#c44e52"
 _WIDTH = 8.0
 _DPI = 150
-_GAP_FILLING = 2.0
+_GAP_FILLING = 3.0
 _CORNERS = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 
 
@@ -294,7 +294,7 @@ def _largest(quantity: _Quantity, state: Snapshot) -> float:
 
 
 def _draw(ax: Axes, state: Snapshot, values: FloatArray, norm: Normalize, cmap: Colormap) -> None:
-    """Each point as a square of its own volume, before a larger one that fills opening gaps."""
+    """Each point as a square of its own volume, over a larger one that fills opening gaps."""
     growth = np.sqrt(state.volume / state.points.volume)
     half = state.points.half_length * growth[:, np.newaxis]
     for size in (_GAP_FILLING, 1.0):

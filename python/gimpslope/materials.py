@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Literal, get_args

@@ -82,7 +82,7 @@ class Scene(Record):
     stone: Material | None = None
     cell: float = 0.1
     points_per_cell: int = 4
-    walls: Walls = Walls()
+    walls: Walls = Walls()  # noqa: RUF009 (frozen)
     gravity: float = 9.81
 
     def __post_init__(self) -> None:

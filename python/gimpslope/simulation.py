@@ -219,7 +219,9 @@ class Recorder:
     def __enter__(self) -> Recorder:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: Any) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: Any
+    ) -> None:
         if self._bar is not None:
             self._bar.close()
         if kind is None:
@@ -315,7 +317,9 @@ class Recorder:
     def _hand_over_rows(self) -> None:
         if self._rows:
             rows, self._rows = self._rows, []
-            self._writer.append_energy({name: np.array([r[name] for r in rows]) for name in rows[0]})
+            self._writer.append_energy(
+                {name: np.array([r[name] for r in rows]) for name in rows[0]}
+            )
 
     def _flush(self) -> None:
         self._hand_over_rows()
@@ -345,7 +349,7 @@ class Recorder:
 
 
 def _times(duration: float, interval: float, further: Sequence[float]) -> list[float]:
-    """All times of snapshots within the duration, in order: every interval, further ones, the end."""
+    """Times of snapshots within the duration, in order: every interval, further ones, the end."""
     regular = np.arange(0.0, duration, interval)
     every = np.concatenate([regular, np.asarray(further, dtype=float), [duration]])
     rounded: list[float] = np.unique(np.round(every[every <= duration], 9)).tolist()

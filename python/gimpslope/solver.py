@@ -164,14 +164,14 @@ class Solver:
         self._core.reset_clock()
 
     def energies(self) -> Energies:
-        """Kinetic, potential (zero at the origin of the coordinates, under full gravity) and elastic
-        energy, J/m, and the largest speed, m/s."""
+        """Kinetic, potential (under full gravity, zero at the origin of the coordinates) and
+        elastic energy, J/m, and the largest speed, m/s."""
         return Energies(**self._core.energies())
 
     def view(self, name: str) -> FloatArray:
-        """A field in storage order without a copy, read-only: it shows the present state for as long
-        as it lives, and the order changes whenever the kernel sorts its points. `numbers` says
-        which points they are.
+        """A field in storage order without a copy, read-only: it shows the present state for as
+        long as it lives, and the order changes whenever the kernel sorts its points. `numbers`
+        says which points they are.
 
         Names: position, velocity (n, 2); stress (n, 4); volume, mass, plastic_strain (n,);
         half_length (n, 2), not with shape "linear"; deformation_gradient (n, 4) as xx, xy, yx, yy,
@@ -181,7 +181,7 @@ class Solver:
 
     @property
     def numbers(self) -> npt.NDArray[np.int32]:
-        """Place in the given order of each stored point, shape (n,); a view like those of `view`."""
+        """Place in the given order of each stored point, shape (n,); a view as of `view`."""
         return self._core.numbers()
 
     @property

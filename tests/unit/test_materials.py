@@ -145,7 +145,7 @@ def test_stored_material_is_checked_anew():
         Material.from_dict({**data, "cohesoin": 1.0})
     with pytest.raises(ValueError, match="DruckerPrager needs 'friction'"):
         Material.from_dict({key: value for key, value in data.items() if key != "friction"})
-    with pytest.raises(ValueError, match="density must be .* got -1"):
+    with pytest.raises(ValueError, match=r"density must be .* got -1"):
         Material.from_dict({**data, "density": -1})
     with pytest.raises(ValueError, match="type must name a kind of Elastic, got 'DruckerPrager'"):
         Elastic.from_dict(data)

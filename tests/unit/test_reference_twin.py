@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+
 from reference import Material, Reference
 from reference.drucker_prager import (
     cone,

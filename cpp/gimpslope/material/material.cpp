@@ -24,7 +24,8 @@ double Material::shear_modulus() const { return young / (2.0 * (1.0 + poisson));
 double Material::wave_modulus() const { return bulk_modulus() + 4.0 / 3.0 * shear_modulus(); }
 
 void Material::check() const {
-  require(density > 0.0 && density < kInfinity, "density", density, "positive and finite, in kg/m3");
+  require(density > 0.0 && density < kInfinity, "density", density,
+          "positive and finite, in kg/m3");
   require(young > 0.0 && young < kInfinity, "young", young, "positive and finite, in Pa");
   require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "above -1 and below 0.5");
   if (law == LawKind::elastic) return;
@@ -36,8 +37,8 @@ void Material::check() const {
   require(dilation >= 0.0 && dilation <= friction, "dilation", dilation,
           "between 0 and the friction angle, in degrees");
   require(tension_cutoff >= 0.0, "tension_cutoff", tension_cutoff, "zero or positive, in Pa");
-  require(tension_cutoff == kInfinity || tension_cutoff <= apex(*this) * (1.0 + 1e-12), "tension_cutoff",
-          tension_cutoff, "at most c cot(phi), the apex of the cone, in Pa");
+  require(tension_cutoff == kInfinity || tension_cutoff <= apex(*this) * (1.0 + 1e-12),
+          "tension_cutoff", tension_cutoff, "at most c cot(phi), the apex of the cone, in Pa");
 }
 
 double tension_limit(const Material& m) { return std::min(m.tension_cutoff, apex(m)); }

@@ -18,17 +18,19 @@ struct Gimp {
 
   /// Values w and derivatives d (times the cell size); `xi` cells from the first node to the left
   /// edge of the domain, which is `width` = 2 l / h cells wide, `inverse` = 1 / width. Free of
-  /// branches: t is how far the domain reaches into the second cell.
+  /// branches and of cancellation: a and b are the parts of the domain in the first and the second
+  /// cell, and a node's value is the area below its hat over them.
   static void evaluate(double xi, double width, double inverse, double (&w)[nodes],
                        double (&d)[nodes]) {
-    const double reach = xi - (1.0 - width);
-    const double t = reach > 0.0 ? reach : 0.0;
-    d[2] = t * inverse;
-    w[2] = 0.5 * t * d[2];
-    w[0] = 1.0 - 0.5 * width - xi + w[2];
-    w[1] = 1.0 - w[0] - w[2];
-    d[0] = d[2] - 1.0;
+    const double room = 1.0 - xi;
+    const double a = room < width ? room : width;
+    const double b = width - a;
+    d[0] = -a * inverse;
+    d[2] = b * inverse;
     d[1] = -(d[0] + d[2]);
+    w[0] = -d[0] * (room - 0.5 * a);
+    w[2] = 0.5 * b * d[2];
+    w[1] = 1.0 - w[0] - w[2];
   }
 };
 

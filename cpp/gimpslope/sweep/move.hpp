@@ -54,7 +54,7 @@ inline void resize_domains(const View& view, int begin, int n, Report& report) {
   for (int k = 0; k < 2 * n; ++k) {
     const double change = per_cell * std::abs(half_length[k] - before[k]);
     const double width = 2.0 * per_cell * half_length[k];
-    if (!(width > 0.0 && change <= kFarthestStep)) {
+    if (!(width > 0.0 && report.travel + change <= kFarthestStep)) {
       report.lost = begin + k / 2;
       return;
     }

@@ -1,9 +1,9 @@
 """The reference study: "Modeling of soil-rock mixture landslides with the generalized interpolation
 material point method", Frontiers in Earth Science 2022, 10:968250.
 
-The paper leaves out its outline, its cone and the details of its walls, and its labels of horizontal
-and vertical displacement are swapped: a point of the crest cannot drop by 8.9 m and move 5.4 m
-sideways. Two readings are offered; neither is tuned further.
+The paper leaves out its outline, its cone and the details of its walls, and its labels of
+horizontal and vertical displacement are swapped: a point of the crest cannot drop by 8.9 m and move
+5.4 m sideways. Two readings are offered; neither is tuned further.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from ..walls import Coulomb, Fixed, Roller, Walls
 class Reading:
     """What the paper leaves open: the cone, the walls, and the strength of its velocity blend.
 
-    The paper blends by alpha = 0.01 a step, which acts as a viscosity that depends on the step; here
-    it is given as that viscosity, m2/s.
+    The paper blends by alpha = 0.01 a step, which acts as a viscosity that depends on the step;
+    here it is given as that viscosity, m2/s.
     """
 
     cone: Cone
