@@ -79,11 +79,7 @@ const Method& checked(const Method& m) {
       require(b > 0.0 && std::isfinite(b), "relaxation_time", b, "positive and finite, in s");
       break;
   }
-#ifdef _OPENMP
   require(m.threads >= 1 && m.threads <= 1024, "threads", m.threads, "in [1, 1024]");
-#else
-  require(m.threads == 1, "threads", m.threads, "1: this build has no OpenMP");
-#endif
   return m;
 }
 
@@ -116,6 +112,7 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
                InstructionSet instruction_set)
     : method_(checked(method)),
       instruction_set_(instruction_set),
+      team_(std::make_unique<Team>(method.threads)),
       materials_(std::move(materials)),
       laws_(laws_of(materials_)),
       grid_(cell, origin[0], origin[1], walls),
@@ -484,7 +481,7 @@ View Solver::view() {
           half_length_,
           method_.domain_update,
           method_.volume_update,
-          method_.threads};
+          team_.get()};
 }
 
 }  // namespace gimpslope

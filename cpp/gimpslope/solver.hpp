@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "material/material.hpp"
 #include "method.hpp"
 #include "points.hpp"
+#include "team.hpp"
 #include "wall.hpp"
 
 namespace gimpslope {
@@ -102,6 +104,7 @@ class Solver {
 
   Method method_;
   InstructionSet instruction_set_;
+  std::unique_ptr<Team> team_;
   std::vector<Material> materials_;
   std::vector<Law> laws_;
   Grid grid_;

@@ -10,6 +10,8 @@
 
 namespace gimpslope {
 
+class Team;
+
 /// Consecutive points of one material that a sweep takes through its short loops while they stay in
 /// the first-level cache.
 struct Block {
@@ -64,7 +66,7 @@ struct View {
   double half_length;  // of all points alike, where points.half_length is null
   DomainUpdate domain_update;
   VolumeUpdate volume_update;
-  int threads;
+  Team* team;
 };
 
 struct StepInput {

@@ -48,13 +48,6 @@ void bind_kernel(py::module_& m) {
     for (const InstructionSet set : available_instruction_sets()) names.emplace_back(name(set));
     return names;
   });
-  m.def("openmp", [] {
-#ifdef _OPENMP
-    return true;
-#else
-    return false;
-#endif
-  });
   m.def("shape_functions", &evaluate_shape, py::arg("shape"), py::arg("position"),
         py::arg("half_length"), py::arg("cell"), py::arg("origin"));
   m.def("return_mapping", &return_stress, py::arg("material"), py::arg("stress"));

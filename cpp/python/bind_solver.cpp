@@ -14,11 +14,13 @@ using WallTuple = std::tuple<std::string, double, double>;  // kind, friction, p
 using Choice = std::pair<std::string, double>;              // what a value means, the value
 
 /// Indices of materials; numbers with a fraction are refused, not cut.
-std::vector<std::int32_t> indices(const py::array& given, py::ssize_t n) {
+std::vector<std::int32_t> indices_of(const py::array& given, py::ssize_t n) {
   const char kind = given.dtype().kind();
   if (given.ndim() != 1 || given.shape(0) != n || (kind != 'i' && kind != 'u')) {
-    refuse("material", py::cast<std::string>(py::repr(given)),
-           "an array of " + std::to_string(n) + " whole numbers");
+    refuse(
+        "material",
+        py::cast<std::string>(py::str("{} of shape {}").format(given.dtype(), given.attr("shape"))),
+        "an array of whole numbers of shape (" + std::to_string(n) + ", )");
   }
   const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wide(given);
   std::vector<std::int32_t> result(static_cast<std::size_t>(n));
@@ -78,11 +80,12 @@ Solver make(const Doubles& position, const Doubles& velocity, const Doubles& hal
   method.threads = threads;
   method.allow_unstable = allow_unstable;
   const py::ssize_t n = rows_of(position);
-  const std::vector<std::int32_t> material_indices = indices(material, n);
-  const InitialPoints points{
+  InitialPoints points{
       values_of(position, "position", n, 2),       values_of(velocity, "velocity", n, 2),
       values_of(half_length, "half_length", n, 2), values_of(mass, "mass", n, 1),
-      values_of(volume, "volume", n, 1),           material_indices};
+      values_of(volume, "volume", n, 1),           {}};
+  const std::vector<std::int32_t> indices = indices_of(material, n);
+  points.material = indices;
   return Solver(points, std::move(materials), cell, origin,
                 {wall(walls[0]), wall(walls[1]), wall(walls[2]), wall(walls[3])}, method,
                 instruction_set.empty() ? available_instruction_sets().back()

@@ -105,7 +105,7 @@ def _bench(options: argparse.Namespace) -> None:
 def _info(_: argparse.Namespace) -> None:
     print(f"gimpslope {gs.__version__}, Python {platform.python_version()}, {platform.machine()}")
     print(f"instruction sets: {', '.join(gs.kernel.instruction_sets())} (the last is used)")
-    print(f"threads: {'OpenMP' if gs.kernel.has_threads() else 'not in this build'}")
+    print(f"processors: {os.cpu_count()}")
 
 
 def _parser() -> argparse.ArgumentParser:

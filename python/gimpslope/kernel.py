@@ -93,8 +93,3 @@ def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> ReturnedSt
 def instruction_sets() -> list[str]:
     """Instruction sets that this build holds and this processor runs, the fastest last."""
     return _core.instruction_sets()
-
-
-def has_threads() -> bool:
-    """Whether this build can use more than one thread."""
-    return _core.openmp()

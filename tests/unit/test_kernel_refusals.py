@@ -51,8 +51,8 @@ MATERIALS = [
     ({"density": np.inf}, ("density", "inf", "finite")),
     ({"young": -1.5}, ("young", "-1.5", "positive")),
     ({"young": np.nan}, ("young", "nan")),
-    ({"poisson": 0.5}, ("poisson", "0.5", "below")),
-    ({"poisson": -1.0}, ("poisson", "-1", "above")),
+    ({"poisson": 0.5}, ("poisson", "0.5", "(-1, 0.5)")),
+    ({"poisson": -1.0}, ("poisson", "-1", "(-1, 0.5)")),
     ({"poisson": np.nan}, ("poisson", "nan")),
     ({"law": "mohr_coulomb"}, ("law", "mohr_coulomb", "elastic", "drucker_prager")),
     ({"friction": -1.0}, ("friction", "-1", "90")),
@@ -66,7 +66,7 @@ MATERIALS = [
     ({"dilation": -1.0}, ("dilation", "-1")),
     ({"dilation": np.nan}, ("dilation", "nan")),
     ({"cone": "middle"}, ("cone", "middle", "outer", "inner", "plane_strain_associated")),
-    ({"tension_cutoff": -3.0}, ("tension_cutoff", "-3", "zero")),
+    ({"tension_cutoff": -3.0}, ("tension_cutoff", "-3", "[0, ")),
     ({"tension_cutoff": np.nan}, ("tension_cutoff", "nan")),
     ({"tension_cutoff": 1e5}, ("tension_cutoff", "100000", "cot")),
     ({"young": "stiff"}, ("young",)),
@@ -245,8 +245,11 @@ def test_viscosity_must_suit_the_step() -> None:
 
     step(0.99 * largest)
     assert_refused(lambda: step(1.01 * largest), "viscosity", f"{1.01 * largest:.4}")
-    slow = solver(SCENE | fixed, blend=("relaxation_time", 0.4 * STABLE))
-    assert_refused(lambda: slow.advance(1), "relaxation_time", f"{0.4 * STABLE:.4}")
+    assert_refused(
+        lambda: solver(SCENE | fixed, blend=("relaxation_time", 0.4 * STABLE)),
+        "relaxation_time",
+        f"{0.4 * STABLE:.4}",
+    )
 
 
 def test_unstable_step_can_be_allowed() -> None:

@@ -107,25 +107,26 @@ def test_ends_of_the_ranges_are_accepted(change):
 def test_refusal_names_parameter_and_value(name, value, error):
     with pytest.raises(error, match=f"^{name} must be ") as refusal:
         replace(SOIL, **{name: value})
-    assert str(value) in str(refusal.value)
+    shown = f"{value:g}" if isinstance(value, float) else str(value)
+    assert shown in str(refusal.value)
 
 
 def test_refusal_says_what_is_allowed():
-    with pytest.raises(ValueError, match=r"^poisson must be a number in \(-1, 0\.5\), got 0\.5$"):
+    with pytest.raises(ValueError, match=r"^poisson must be in \(-1, 0\.5\), got 0\.5$"):
         Elastic(1800, 30e6, 0.5)
     with pytest.raises(ValueError, match=r"^cone must be one of 'outer', 'inner'.*, got 'round'$"):
         replace(SOIL, cone="round")
-    with pytest.raises(ValueError, match=r"^dilation must be a number in \[0, 22\], got 30$"):
+    with pytest.raises(ValueError, match=r"^dilation must be in \[0, 22\] degrees, .*, got 30$"):
         replace(SOIL, dilation=30)
 
 
 def test_material_without_strength_is_refused():
-    with pytest.raises(ValueError, match="cohesion must be > 0 where friction is 0, got 0"):
+    with pytest.raises(ValueError, match=r"cohesion must be positive where friction is 0, .* got 0"):
         replace(SOIL, friction=0, cohesion=0)
 
 
 def test_cohesionless_material_bears_no_tension():
-    with pytest.raises(ValueError, match=r"tension_cutoff must be a number in \[0, 0\], got 1"):
+    with pytest.raises(ValueError, match=r"tension_cutoff must be in \[0, 0\] Pa, .* got 1"):
         replace(SOIL, cohesion=0, tension_cutoff=1)
 
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <sstream>
+#include <string>
 
 #include "../error.hpp"
 
@@ -17,6 +19,12 @@ double apex(const Material& m) {
   return m.friction > 0.0 ? m.cohesion / std::tan(m.friction * kDegree) : kInfinity;
 }
 
+std::string in_range(double most, const char* unit) {
+  std::ostringstream rule;
+  rule << "in [0, " << most << "] " << unit;
+  return rule.str();
+}
+
 }  // namespace
 
 double Material::bulk_modulus() const { return young / (3.0 * (1.0 - 2.0 * poisson)); }
@@ -27,18 +35,19 @@ void Material::check() const {
   require(density > 0.0 && density < kInfinity, "density", density,
           "positive and finite, in kg/m3");
   require(young > 0.0 && young < kInfinity, "young", young, "positive and finite, in Pa");
-  require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "above -1 and below 0.5");
+  require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "in (-1, 0.5)");
   if (law == LawKind::elastic) return;
-  require(friction >= 0.0 && friction < 90.0, "friction", friction, "in [0, 90) degrees");
+  require(friction >= 0.0 && friction < 90.0, "friction", friction, "in [0, 90), in degrees");
   require(cohesion >= 0.0 && cohesion < kInfinity, "cohesion", cohesion,
           "zero or positive and finite, in Pa");
   require(friction > 0.0 || cohesion > 0.0, "cohesion", cohesion,
           "positive where friction is 0, or the material has no strength");
   require(dilation >= 0.0 && dilation <= friction, "dilation", dilation,
-          "between 0 and the friction angle, in degrees");
-  require(tension_cutoff >= 0.0, "tension_cutoff", tension_cutoff, "zero or positive, in Pa");
-  require(tension_cutoff == kInfinity || tension_cutoff <= apex(*this) * (1.0 + 1e-12),
-          "tension_cutoff", tension_cutoff, "at most c cot(phi), the apex of the cone, in Pa");
+          in_range(friction, "degrees, at most the friction angle").c_str());
+  require(tension_cutoff == kInfinity ||
+              (tension_cutoff >= 0.0 && tension_cutoff <= apex(*this) * (1.0 + 1e-12)),
+          "tension_cutoff", tension_cutoff,
+          in_range(apex(*this), "Pa, at most c cot(phi)").c_str());
 }
 
 double tension_limit(const Material& m) { return std::min(m.tension_cutoff, apex(m)); }

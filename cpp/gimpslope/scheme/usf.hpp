@@ -2,6 +2,7 @@
 // the velocities at its start.
 #pragma once
 
+#include "../sweep/loops.hpp"
 #include "../sweep/move.hpp"
 #include "../sweep/nodes.hpp"
 #include "../sweep/stress.hpp"
@@ -9,52 +10,37 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Runs work(slab) for all slabs, even ones first and odd ones after, so that no two that run at
-/// the same time reach the same node. Called by all threads of a team.
-template <class Work>
-void for_each_slab(const View& view, Work work) {
-  for (int parity = 0; parity < 2; ++parity) {
-#pragma omp for schedule(dynamic, 1)
-    for (int slab = parity; slab < view.slab_count; slab += 2) work(slab);
-  }
-}
-
-template <class Work>
-void for_each_row(const View& view, Work work) {
-#pragma omp for schedule(static)
-  for (int row = 0; row < view.grid.rows; ++row) work(row);
-}
-
 template <class Shape, bool kOwnDomain>
 struct Usf {
   static void prepare(const View& view) {
-#pragma omp parallel num_threads(view.threads) if (view.threads > 1)
-    for_each_slab(view, [&](int slab) {
-      for (int b = view.slabs[slab].begin; b < view.slabs[slab].end; ++b) {
-        const Block& block = view.blocks[b];
-        Weights<Shape> weights;
-        evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
-        scatter_momentum(view, block.begin, block.end - block.begin, weights);
-      }
+    together(*view.team, [&] {
+      for_each_slab(view, [&](int slab) {
+        for_each_block(view, slab, [&](const Block& block) {
+          Weights<Shape> weights;
+          evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
+          scatter_momentum(view, block.begin, block.end - block.begin, weights);
+        });
+      });
     });
   }
 
   static void step(const View& view, const StepInput& input, Report* reports) {
-#pragma omp parallel num_threads(view.threads) if (view.threads > 1)
-    {
+    together(*view.team, [&] {
       for_each_row(view, [&](int row) { start_nodes(view.grid, row); });
       for_each_slab(view, [&](int slab) {
-        for (int b = view.slabs[slab].begin; b < view.slabs[slab].end; ++b)
-          stress_block<Shape, kOwnDomain>(view, input, view.blocks[b]);
+        for_each_block(view, slab, [&](const Block& block) {
+          stress_block<Shape, kOwnDomain>(view, input, block);
+        });
       });
       for_each_row(view, [&](int row) { finish_nodes(view.grid, row, input); });
       for_each_slab(view, [&](int slab) {
         Report report;
-        for (int b = view.slabs[slab].begin; b < view.slabs[slab].end && report.lost < 0; ++b)
-          move_block(view, input, view.blocks[b], report);
+        for_each_block(view, slab, [&](const Block& block) {
+          if (report.lost < 0) move_block(view, input, block, report);
+        });
         reports[slab] = report;
       });
-    }
+    });
   }
 
  private:

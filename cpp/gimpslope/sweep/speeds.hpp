@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../view.hpp"
+#include "loops.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -9,25 +10,25 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// Squared point and wave speeds, c^2 = (K + 4G/3) V / m, the largest of each slab.
 inline void measure_speeds(const View& view, Speeds* speeds) {
   const PointsView& p = view.points;
-#pragma omp parallel for schedule(static) num_threads(view.threads) if (view.threads > 1)
-  for (int slab = 0; slab < view.slab_count; ++slab) {
-    Speeds largest;
-    for (int b = view.slabs[slab].begin; b < view.slabs[slab].end; ++b) {
-      const Block& block = view.blocks[b];
-      double point = 0.0, specific_volume = 0.0;
-      for (int k = block.begin; k < block.end; ++k) {
-        const double vx = p.motion[4 * k + 2], vy = p.motion[4 * k + 3];
-        const double square = vx * vx + vy * vy;
-        point = square > point ? square : point;
-        const double ratio = p.volume[k] / p.mass[k];
-        specific_volume = ratio > specific_volume ? ratio : specific_volume;
-      }
-      const double wave = view.laws[block.material].wave_modulus * specific_volume;
-      largest.point = point > largest.point ? point : largest.point;
-      largest.wave = wave > largest.wave ? wave : largest.wave;
-    }
-    speeds[slab] = largest;
-  }
+  together(*view.team, [&] {
+    for_each_slab(view, [&](int slab) {
+      Speeds largest;
+      for_each_block(view, slab, [&](const Block& block) {
+        double point = 0.0, specific_volume = 0.0;
+        for (int k = block.begin; k < block.end; ++k) {
+          const double vx = p.motion[4 * k + 2], vy = p.motion[4 * k + 3];
+          const double square = vx * vx + vy * vy;
+          point = square > point ? square : point;
+          const double ratio = p.volume[k] / p.mass[k];
+          specific_volume = ratio > specific_volume ? ratio : specific_volume;
+        }
+        const double wave = view.laws[block.material].wave_modulus * specific_volume;
+        largest.point = point > largest.point ? point : largest.point;
+        largest.wave = wave > largest.wave ? wave : largest.wave;
+      });
+      speeds[slab] = largest;
+    });
+  });
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

@@ -1,0 +1,342 @@
+"""The Python solver over the compiled one, and single pieces of the kernel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import gimpslope as gs
+
+G = 9.81
+SOIL = gs.DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)
+SCENE = gs.Scene(gs.Outline.slope(), SOIL, cell=0.8)
+N = SCENE.n_points
+
+
+def floating(**options: Any) -> gs.Solver:
+    """The points of the slope without walls."""
+    return gs.Solver(SCENE.points, [SOIL.elastic()], cell=SCENE.cell, **options)
+
+
+# Motion with an exact answer
+
+
+def test_free_fall() -> None:
+    """Every step adds g dt to the velocity, then v dt to the place: sums with a closed form."""
+    dt, n = 1e-3, 200
+    solver = floating(gravity=(1.5, -G), method=gs.Method(time_step=dt, alpha=0.0))
+    solver.advance(n)
+    gravity = np.array([1.5, -G])
+    np.testing.assert_allclose(solver.velocity, np.tile(gravity * n * dt, (N, 1)), rtol=1e-10)
+    fallen = solver.position - SCENE.points.position
+    np.testing.assert_allclose(fallen, np.tile(gravity * dt**2 * n * (n + 1) / 2, (N, 1)), rtol=1e-9)
+    assert solver.steps == n and solver.time == pytest.approx(n * dt)
+    # Rounding only: 1e-16 of the modulus and of 200 sums.
+    assert np.abs(solver.stress).max() < 1e-10 * SOIL.young
+
+
+def test_gravity_grows_linearly_and_then_stays() -> None:
+    """Step k of the ramp adds g dt (k dt / ramp)."""
+    dt, ramp = 1e-3, 0.1
+    solver = floating(method=gs.Method(time_step=dt))
+    solver.set_gravity(0.0, -G, ramp)
+    for k in (30, 100, 150):
+        solver.advance(k - solver.steps)
+        in_ramp = min(k, 100)
+        speed = G * dt * (dt / ramp * in_ramp * (in_ramp + 1) / 2 + (k - in_ramp))
+        np.testing.assert_allclose(solver.velocity[:, 1], -speed, rtol=1e-9)
+
+
+def test_momentum_and_angular_momentum_without_walls() -> None:
+    """A stressed body that flies apart keeps its momentum; mass is that of before to the bit."""
+    random = np.random.default_rng(4)
+    solver = floating(velocity=random.normal(size=(N, 2)), method=gs.Method(alpha=0.0))
+    before = solver.mass @ solver.velocity
+    solver.advance(100)
+    scale = solver.mass @ np.abs(solver.velocity)
+    np.testing.assert_allclose(solver.mass @ solver.velocity, before, atol=1e-11 * scale.max())
+    np.testing.assert_array_equal(solver.mass, SCENE.points.mass)
+
+
+def test_bar_swings_in_its_period() -> None:
+    """A bar between rollers that gravity meets at once swings at f = c / (4 H) between no load and
+    twice the static one. The mesh of n cells is 1/(24) (pi / (2 n))^2 off, under 0.1 % for 8."""
+    height = 4.0
+    corners = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, height), (0.0, height)])
+    rock = gs.Elastic(density=2000, young=1e9, poisson=0.3)
+    walls = gs.Walls(gs.Roller(), gs.Roller(), gs.Roller(), gs.Free())
+    scene = gs.Scene(gs.Outline(corners), rock, cell=0.5, walls=walls)
+    solver = gs.Solver.of(scene, gs.Method(alpha=0.0, courant=0.2))
+    period = 4 * height / rock.wave_speed
+    times, tops = [], []
+    while solver.time < 3 * period:
+        solver.step()
+        times.append(solver.time)
+        tops.append(solver.position[:, 1].max())
+    fall = tops[0] - np.array(tops)
+    static = rock.density * G * height**2 / (2 * rock.wave_speed**2 * rock.density)
+    assert fall.max() == pytest.approx(2 * static, rel=0.06)
+    middle = fall > static
+    rises = np.asarray(times)[1:][middle[1:] & ~middle[:-1]]
+    # Steps are 1/160 of a period, and higher modes tilt each passage.
+    assert np.diff(rises).mean() == pytest.approx(period, rel=0.03)
+
+
+# Energies
+
+
+def test_energies_of_a_known_state() -> None:
+    stress = np.zeros((N, 4))
+    stress[:, :3] = -5e4
+    solver = floating(velocity=np.tile((3.0, 4.0), (N, 1)), stress=stress, gravity=(0.0, -G))
+    mass, volume = SCENE.points.mass, SCENE.points.volume
+    energies = solver.energies()
+    assert energies.kinetic == pytest.approx(12.5 * mass.sum())
+    assert energies.potential == pytest.approx(G * mass @ SCENE.points.position[:, 1])
+    assert energies.elastic == pytest.approx(5e4**2 / (2 * SOIL.bulk_modulus) * volume.sum())
+    assert energies.max_speed == pytest.approx(5.0)
+
+
+def test_release_stress_returns_and_tells_the_energy() -> None:
+    random = np.random.default_rng(0)
+    stress = 1e5 * random.normal(size=(N, 4))
+    solver = gs.Solver.of(SCENE)
+    solver.stress = stress
+    before = solver.energies().elastic
+    released = solver.release_stress()
+    expected = gs.kernel.return_mapping(SOIL, stress)
+    np.testing.assert_allclose(solver.stress, expected.stress, rtol=1e-12, atol=1e-6)
+    np.testing.assert_allclose(solver.plastic_strain, expected.plastic_strain, rtol=1e-12)
+    assert released == pytest.approx(before - solver.energies().elastic, rel=1e-9)
+    assert released > 0
+    # What was returned is on the surface: again nothing is released but rounding.
+    assert abs(solver.release_stress()) < 1e-9 * released
+
+
+# State, clock, time step
+
+
+def test_scene_becomes_a_solver_at_rest() -> None:
+    solver = gs.Solver.of(SCENE)
+    assert len(solver) == N
+    for name in ("position", "half_length", "volume", "mass", "material"):
+        np.testing.assert_array_equal(getattr(solver, name), getattr(SCENE.points, name))
+    np.testing.assert_allclose(solver.density, SOIL.density)
+    for name in ("velocity", "stress", "plastic_strain"):
+        assert not getattr(solver, name).any()
+    assert solver.time == 0 and solver.steps == 0 and solver.threads == 1
+    assert solver.instruction_set == gs.kernel.instruction_sets()[-1]
+    assert "368 points" in repr(solver) and 0 < solver.bytes < 1000 * N
+
+
+def test_arrays_in_the_given_order_and_views_in_storage_order() -> None:
+    shuffled = np.random.default_rng(1).permutation(N)
+    points = gs.Points(**{k: v[shuffled] for k, v in vars(SCENE.points).items() if k != "_"})
+    solver = gs.Solver(points, [SOIL], cell=SCENE.cell, gravity=(2.0, -G))
+    solver.advance(5)
+    assert (solver.numbers != np.arange(N)).any()
+    assert np.abs(solver.position - points.position).max() < 0.01
+    for name in ("position", "velocity", "stress", "volume", "plastic_strain"):
+        np.testing.assert_array_equal(solver.view(name), getattr(solver, name)[solver.numbers])
+
+
+@pytest.mark.parametrize(("name", "columns"), [("position", 2), ("velocity", 2), ("stress", 4)])
+def test_setters_take_what_they_give(name: str, columns: int) -> None:
+    solver = gs.Solver.of(SCENE)
+    values = np.random.default_rng(2).uniform(0.1, 0.2, (N, columns))
+    setattr(solver, name, values)
+    np.testing.assert_array_equal(getattr(solver, name), values)
+
+
+def test_step_advance_and_advance_to_are_one() -> None:
+    method = gs.Method(time_step=1e-3)
+    solvers = [gs.Solver.of(SCENE, method) for _ in range(3)]
+    for _ in range(20):
+        solvers[0].step()
+    solvers[1].advance(20)
+    solvers[2].advance_to(0.02)
+    for other in solvers[1:]:
+        assert other.steps == 20
+        np.testing.assert_array_equal(other.position, solvers[0].position)
+        np.testing.assert_array_equal(other.stress, solvers[0].stress)
+
+
+def test_advance_to_ends_exactly_with_a_courant_number() -> None:
+    solver = gs.Solver.of(SCENE, gs.Method(courant=0.3))
+    for until in (0.01, 0.0101, 0.3):
+        solver.advance_to(until)
+        assert solver.time == pytest.approx(until, rel=1e-12)
+    steps = solver.steps
+    solver.advance_to(0.1)
+    assert solver.steps == steps
+
+
+def test_courant_step_is_that_share_of_the_crossing_time() -> None:
+    velocity = np.zeros((N, 2))
+    velocity[5] = (30.0, 40.0)
+    solver = floating(velocity=velocity, method=gs.Method(courant=0.3))
+    expected = 0.3 * SCENE.cell / (SOIL.wave_speed + 50.0)
+    assert solver.time_step == pytest.approx(expected, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("method", "alpha"),
+    [
+        (gs.Method(time_step=1e-3), 0.01),
+        (gs.Method(time_step=1e-3, alpha=0.2), 0.2),
+        (gs.Method(time_step=1e-3, relaxation_time=0.1), 0.01),
+        # 0.1875 alpha h2 / dt is the viscosity at two points a direction.
+        (gs.Method(time_step=1e-3, viscosity=0.6), 0.6 * 1e-3 / (0.1875 * 0.8**2)),
+    ],
+)
+def test_share_of_pic(method: gs.Method, alpha: float) -> None:
+    assert gs.Solver.of(SCENE, method).alpha == pytest.approx(alpha, rel=1e-12)
+
+
+def test_step_above_the_stable_limit_is_refused_unless_allowed() -> None:
+    limit = gs.Solver.of(SCENE).stable_time_step
+    above = gs.Method(time_step=1.01 * limit)
+    with pytest.raises(ValueError, match=r"time_step must be at most 0\.00\d+ s.*allow_unstable"):
+        gs.Solver.of(SCENE, above)
+    assert gs.Solver.of(SCENE, replace(above, allow_unstable=True)).time_step == 1.01 * limit
+    gs.Solver.of(SCENE, gs.Method(time_step=limit))
+
+
+def test_diverged_names_step_time_point_and_cause() -> None:
+    solver = gs.Solver.of(SCENE, gs.Method(time_step=1e-3))
+    solver.advance(3)
+    velocity = solver.velocity
+    velocity[11] = (0.0, 1e8)
+    solver.velocity = velocity
+    with pytest.raises(gs.Diverged, match=r"step 4, t = 0\.004 s: point \d+ at .*likely cause") as e:
+        solver.advance(10)
+    assert (e.value.step, e.value.time) == (4, pytest.approx(4e-3))
+    assert 0 <= e.value.point < N
+
+
+def test_two_solvers_in_turns_do_not_touch_each_other() -> None:
+    other = replace(SCENE, cell=1.0, walls=gs.Walls(bottom=gs.Coulomb(0.2)))
+
+    def make() -> tuple[gs.Solver, gs.Solver]:
+        return gs.Solver.of(SCENE), gs.Solver.of(other, gs.Method(shape="linear", threads=2))
+
+    alone, turns = make(), make()
+    for solver in alone:
+        solver.advance(90)
+    for _ in range(30):
+        for solver in turns:
+            solver.advance(3)
+    for one, same in zip(alone, turns, strict=True):
+        np.testing.assert_array_equal(one.position, same.position)
+        np.testing.assert_array_equal(one.stress, same.stress)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"cell": -1.0}, "cell must be .*got -1"),
+        ({"origin": (float("nan"), 0.0)}, "origin must be .*got nan"),
+        ({"velocity": np.zeros((3, 2))}, r"velocity must be .*\(368, 2\).*got .*\(3, 2\)"),
+        ({"stress": np.full((N, 4), np.nan)}, "stress must be .*got nan"),
+        ({"gravity": (0.0, float("inf"))}, "gravity must be .*got inf"),
+        ({"instruction_set": "abacus"}, "instruction_set must be one of .*got abacus"),
+        ({"walls": gs.Walls()}, "wall_positions must be given"),
+        ({"materials": []}, "material must be an index into the 0 materials"),
+    ],
+)
+def test_refused_parameters(options: dict[str, Any], message: str) -> None:
+    given: dict[str, Any] = {"materials": [SOIL], "cell": SCENE.cell} | options
+    with pytest.raises((TypeError, ValueError), match=message):
+        gs.Solver(SCENE.points, **given)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda s: s.advance(-1), "steps must be a whole number >= 0, got -1"),
+        (lambda s: s.advance(1.5), r"steps must be a whole number >= 0, got 1\.5"),
+        (lambda s: s.advance_to(float("nan")), "time must be a finite number, got nan"),
+        (lambda s: s.set_gravity(0.0, -G, -1.0), "ramp must be .*got -1"),
+        (lambda s: s.set_damping(1.0), r"local must be in \[0, 1\), got 1"),
+        (lambda s: s.set_materials([]), "materials must be a list of 1"),
+        (lambda s: s.view("colour"), "field must be one of .*got colour"),
+        (lambda s: setattr(s, "position", np.zeros(3)), r"position must be .*\(368, 2\)"),
+        (lambda s: setattr(s, "stress", np.full((N, 4), np.inf)), "stress must be .*got inf"),
+    ],
+)
+def test_refused_arguments(call: Callable[[gs.Solver], Any], message: str) -> None:
+    solver = gs.Solver.of(SCENE)
+    with pytest.raises((TypeError, ValueError), match=message):
+        call(solver)
+    assert solver.steps == 0
+
+
+# gimpslope.kernel
+
+
+@pytest.mark.parametrize("shape", ["linear", "ugimp", "cpgimp"])
+def test_shape_functions_are_a_partition_that_reproduces_places(shape: Any) -> None:
+    random = np.random.default_rng(0)
+    points = random.uniform(-3, 3, (50, 2))
+    halves = random.uniform(0.05, 0.2, (50, 2))
+    cell, origin = 0.5, (-0.2, 0.3)
+    found = gs.kernel.shape_functions(shape, points, halves, cell=cell, origin=origin)
+    nodes = np.asarray(origin) + cell * found.nodes
+    np.testing.assert_allclose(found.values.sum(axis=1), 1, rtol=1e-12)
+    np.testing.assert_allclose(found.gradients.sum(axis=1), 0, atol=1e-12)
+    np.testing.assert_allclose((found.values[..., None] * nodes).sum(axis=1), points, atol=1e-12)
+    jacobian = np.einsum("pkc,pkd->pcd", nodes, found.gradients)
+    np.testing.assert_allclose(jacobian, np.tile(np.eye(2), (50, 1, 1)), atol=1e-12)
+
+
+def test_shape_functions_refuse() -> None:
+    with pytest.raises(ValueError, match="half_length must be given with shape 'ugimp', got None"):
+        gs.kernel.shape_functions("ugimp", [(0.0, 0.0)], cell=1.0)
+    with pytest.raises(ValueError, match="shape must be one of .*got 'cubic'"):
+        gs.kernel.shape_functions("cubic", [(0.0, 0.0)], cell=1.0)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"half_length must be .*\(1, 2\)"):
+        gs.kernel.shape_functions("ugimp", [(0.0, 0.0)], np.ones((2, 2)), cell=1.0)
+    with pytest.raises(ValueError, match="cell must be .*got 0"):
+        gs.kernel.shape_functions("linear", [(0.0, 0.0)], cell=0.0)
+
+
+def test_return_mapping_ends_on_the_cone() -> None:
+    trial = 1e5 * np.random.default_rng(0).normal(size=(200, 4)) - [2e5, 2e5, 2e5, 0]
+    found = gs.kernel.return_mapping(SOIL, trial)
+    eta, xi, _ = SOIL.cone_coefficients
+
+    def excess(stress: np.ndarray) -> np.ndarray:
+        mean = stress[:, :3].mean(axis=1)
+        deviator = stress[:, :3] - mean[:, None]
+        j2 = 0.5 * (deviator**2).sum(axis=1) + stress[:, 3] ** 2
+        result: np.ndarray = np.sqrt(j2) + eta * mean - xi * SOIL.cohesion
+        return result
+
+    outside = excess(trial) > 0
+    assert 0 < outside.sum() < 200
+    np.testing.assert_allclose(excess(found.stress)[outside], 0, atol=1e-6)
+    np.testing.assert_array_equal(found.stress[~outside], trial[~outside])
+    np.testing.assert_array_equal(found.plastic_strain > 0, outside)
+
+
+def test_return_mapping_refuses() -> None:
+    with pytest.raises(TypeError, match="material must be a DruckerPrager"):
+        gs.kernel.return_mapping(SOIL.elastic(), np.zeros((1, 4)))  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match=r"stress must be .*\(n, 4\)"):
+        gs.kernel.return_mapping(SOIL, np.zeros((2, 3)))
+
+
+def test_instruction_sets_agree() -> None:
+    """Fused multiply-adds round otherwise, so that sets differ, but by rounding only."""
+    sets = gs.kernel.instruction_sets()
+    assert "generic" in sets
+    solvers = [gs.Solver.of(SCENE, instruction_set=name) for name in sets]
+    for name, solver in zip(sets, solvers, strict=True):
+        assert solver.instruction_set == name
+        solver.advance(50)
+        np.testing.assert_allclose(solver.position, solvers[0].position, rtol=1e-10)
+    assert isinstance(gs.kernel.has_threads(), bool)
