@@ -3,17 +3,16 @@
 namespace gimpslope {
 namespace {
 
-/// Waits until `counter` has left `old`: first without leaving the processor, then giving way to
-/// others, then asleep.
-void wait_for_change(const std::atomic<std::uint32_t>& counter, std::uint32_t old) {
-  constexpr int spins = 20000, yields = 20;
+/// Waits until `counter` has left `old`: at first without leaving the processor, then asleep.
+void wait_for_change(const std::atomic<std::uint32_t>& counter, std::uint32_t old, int spins) {
   for (int k = 0; k < spins; ++k)
     if (counter.load(std::memory_order_acquire) != old) return;
-  for (int k = 0; k < yields; ++k) {
-    if (counter.load(std::memory_order_acquire) != old) return;
-    std::this_thread::yield();
-  }
   counter.wait(old, std::memory_order_acquire);
+}
+
+/// As long as a barrier of a step usually takes; not at all where threads share processors.
+int spins_of(int size) {
+  return size <= static_cast<int>(std::thread::hardware_concurrency()) ? 20000 : 0;
 }
 
 void advance(std::atomic<std::uint32_t>& counter) {
@@ -23,7 +22,7 @@ void advance(std::atomic<std::uint32_t>& counter) {
 
 }  // namespace
 
-Team::Team(int size) : size_(size) {
+Team::Team(int size) : size_(size), spins_(spins_of(size)) {
   for (int k = 1; k < size; ++k) threads_.emplace_back([this] { work(); });
 }
 
@@ -43,7 +42,7 @@ void Team::run(void (*job)(void*), void* context) {
 
 void Team::work() {
   for (std::uint32_t done = 0;; ++done) {
-    wait_for_change(jobs_, done);
+    wait_for_change(jobs_, done, spins_);
     if (leaving_) return;
     job_(context_);
     barrier();
@@ -53,7 +52,7 @@ void Team::work() {
 void Team::barrier() {
   const std::uint32_t before = meets_.load(std::memory_order_acquire);
   if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 < size_) {
-    wait_for_change(meets_, before);
+    wait_for_change(meets_, before, spins_);
     return;
   }
   arrived_.store(0, std::memory_order_relaxed);

@@ -33,6 +33,7 @@ class Team {
   void work();
 
   int size_;
+  int spins_;
   std::vector<std::thread> threads_;
   void (*job_)(void*) = nullptr;
   void* context_ = nullptr;

@@ -63,7 +63,7 @@ _PLASTIC = _Quantity(
     _soil_plastic_strain,
     lambda largest: LogNorm(PLASTIC_THRESHOLD, max(largest, 100 * PLASTIC_THRESHOLD)),
     colormaps["inferno_r"].with_extremes(under=_REST, bad=_STONE),
-    f"equivalent plastic strain (grey: below {PLASTIC_THRESHOLD:g})",
+    f"plastic strain (grey: below {PLASTIC_THRESHOLD:g})",
 )
 
 
@@ -94,22 +94,30 @@ def kinetic_energy(
     return ax
 
 
-def speed(run: Run, time: float, ax: Axes | None = None) -> Axes:
-    """Map of the speed (m/s) at `time` (s)."""
-    return _map(run, run.snapshot(time), _SPEED, ax)
+def speed(run: Run, time: float, ax: Axes | None = None, *, largest: float | None = None) -> Axes:
+    """Map of the speed (m/s) at `time` (s).
+
+    The colours of this map and the next two end at the largest value shown, or at `largest`, by
+    which several maps share a scale.
+    """
+    return _map(run, run.snapshot(time), _SPEED, ax, largest)
 
 
-def plastic_zone(run: Run, time: float, ax: Axes | None = None) -> Axes:
+def plastic_zone(
+    run: Run, time: float, ax: Axes | None = None, *, largest: float | None = None
+) -> Axes:
     """Map of the equivalent plastic strain of the soil at `time` (s), on a logarithmic scale.
 
     Points below the threshold of the plastic zone are light grey, stones dark.
     """
-    return _map(run, run.snapshot(time), _PLASTIC, ax)
+    return _map(run, run.snapshot(time), _PLASTIC, ax, largest)
 
 
-def displacement(run: Run, time: float | None = None, ax: Axes | None = None) -> Axes:
+def displacement(
+    run: Run, time: float | None = None, ax: Axes | None = None, *, largest: float | None = None
+) -> Axes:
     """Map of the displacement since the trigger (m) at `time` (s), or in the end."""
-    return _map(run, run.state(time), _DISPLACEMENT, ax)
+    return _map(run, run.state(time), _DISPLACEMENT, ax, largest)
 
 
 def shape(run: Run, time: float | None = None, ax: Axes | None = None) -> Axes:
@@ -279,9 +287,11 @@ def _stacked(run: Run, count: int, states: Sequence[Snapshot]) -> tuple[Figure, 
     return figure, axes
 
 
-def _map(run: Run, state: Snapshot, quantity: _Quantity, ax: Axes | None) -> Axes:
+def _map(
+    run: Run, state: Snapshot, quantity: _Quantity, ax: Axes | None, largest: float | None
+) -> Axes:
     ax = ax or _new_axes()
-    norm = quantity.norm(_largest(quantity, state))
+    norm = quantity.norm(_largest(quantity, state) if largest is None else largest)
     _draw(ax, state, quantity.values(state), norm, quantity.cmap)
     _draw_outline(ax, run.scene.outline.vertices)
     _colour_bar([ax], norm, quantity.cmap, quantity.label)
@@ -294,13 +304,18 @@ def _largest(quantity: _Quantity, state: Snapshot) -> float:
 
 
 def _draw(ax: Axes, state: Snapshot, values: FloatArray, norm: Normalize, cmap: Colormap) -> None:
-    """Each point as a square of its own volume, over a larger one that fills opening gaps."""
+    """Each point as a square of its own volume, over a larger one that fills opening gaps.
+
+    The larger ones stay in the bounding box of the points, so that none reaches beyond a wall.
+    """
     growth = np.sqrt(state.volume / state.points.volume)
     half = state.points.half_length * growth[:, np.newaxis]
-    for size in (_GAP_FILLING, 1.0):
-        squares = state.position[:, np.newaxis] + size * _CORNERS * half[:, np.newaxis]
+    squares = state.position[:, np.newaxis] + _CORNERS * half[:, np.newaxis]
+    larger = state.position[:, np.newaxis] + _GAP_FILLING * _CORNERS * half[:, np.newaxis]
+    box = squares.min(axis=(0, 1)), squares.max(axis=(0, 1))
+    for drawn in (np.clip(larger, *box), squares):
         points = PolyCollection(
-            list(squares),
+            list(drawn),
             array=np.ma.masked_invalid(values),
             norm=norm,
             cmap=cmap,

@@ -321,26 +321,32 @@ class Run:
         """Kinetic energy of the slide against time."""
         return self.energy.plot(ax)
 
-    def plot_speed(self, time: float, ax: Axes | None = None) -> Axes:
-        """Map of the speed at `time` (s)."""
+    def plot_speed(
+        self, time: float, ax: Axes | None = None, *, largest: float | None = None
+    ) -> Axes:
+        """Map of the speed at `time` (s); its colours end at `largest` (m/s) where given."""
         from . import figures
 
-        return figures.speed(self, time, ax)
+        return figures.speed(self, time, ax, largest=largest)
 
-    def plot_plastic_zone(self, time: float, ax: Axes | None = None) -> Axes:
+    def plot_plastic_zone(
+        self, time: float, ax: Axes | None = None, *, largest: float | None = None
+    ) -> Axes:
         """Map of the equivalent plastic strain at `time` (s)."""
         from . import figures
 
-        return figures.plastic_zone(self, time, ax)
+        return figures.plastic_zone(self, time, ax, largest=largest)
 
-    def plot_displacement(self, time: float | None = None, ax: Axes | None = None) -> Axes:
+    def plot_displacement(
+        self, time: float | None = None, ax: Axes | None = None, *, largest: float | None = None
+    ) -> Axes:
         """Map of the displacement since the trigger at `time` (s), or in the end."""
         from . import figures
 
-        return figures.displacement(self, time, ax)
+        return figures.displacement(self, time, ax, largest=largest)
 
     def __repr__(self) -> str:
-        return f"<Run {str(self.path)!r}: {self.status}>"
+        return f"<Run {self.path.name!r}: {self.status}>"
 
     def _repr_html_(self) -> str:
         rows = "".join(

@@ -99,7 +99,7 @@ def test_progress_shows_time_speed_and_what_is_left(
         ("--duration inf", "duration"),
         ("--courant 3", "courant"),
         ("--courant 0", "courant"),
-        ("--time-step 1", "time_step"),
+        ("--time-step 0.01", "time_step"),
         ("--time-step -1", "time_step"),
         ("--time-step 0.001 --courant 0.1", "--courant"),
         ("--threads 0", "threads"),

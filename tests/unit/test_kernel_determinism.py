@@ -48,7 +48,6 @@ def test_run_to_run(expected: State) -> None:
     assert_identical(after(threads=1), expected)
 
 
-@pytest.mark.skipif(not _core.openmp(), reason="this build has one thread")
 @pytest.mark.parametrize("threads", [2, 3, 4])
 def test_any_number_of_threads(expected: State, threads: int) -> None:
     assert_identical(after(threads=threads), expected)

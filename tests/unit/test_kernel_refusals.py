@@ -319,7 +319,7 @@ def test_step_far_above_the_limit_diverges(shape: str, instruction_set: str) -> 
     assert_diverges(stepped, "time step", "stable limit")
 
 
-@pytest.mark.parametrize("threads", [1, 2] if _core.openmp() else [1])
+@pytest.mark.parametrize("threads", [1, 2])
 def test_mad_speed_diverges(threads: int) -> None:
     stepped = solver(SCENE, threads=threads, time_step=("fixed", 0.5 * STABLE))
     stepped.set("velocity", np.full((N, 2), 1e6))
