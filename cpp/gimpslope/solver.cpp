@@ -14,6 +14,7 @@ namespace gimpslope {
 namespace {
 
 constexpr int kStepsBetweenSorts = 50;
+constexpr double kFastest = 1000.0;          // speed of a point, in wave speeds
 constexpr double kTravelBetweenSorts = 0.5;  // cells; see kFarthestStep
 
 /// The points share one half-length unless they were given different ones, follow the deformation,
@@ -121,6 +122,7 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
   choose_kernel();
   set_time_step(method.time_step);
   prepare();
+  alpha_of(time_step());
 }
 
 void Solver::fill(const InitialPoints& given) {
@@ -324,7 +326,9 @@ void Solver::set_materials(std::vector<Material> materials) {
           std::to_string(materials.size()) + " materials",
           ("a list of " + std::to_string(materials_.size())).c_str());
   std::vector<Law> laws = laws_of(materials);
-  check_step(method_.time_step, materials);
+  if (stable_time_step_of(materials) < stable_time_step() ||
+      courant_limit_of(materials) < courant_limit())
+    check_step(method_.time_step, materials);
   laws_ = std::move(laws);
   materials_ = std::move(materials);
 }
@@ -379,7 +383,26 @@ double Solver::time_step() {
     all.point = std::max(all.point, slab.point);
     all.wave = std::max(all.wave, slab.wave);
   }
-  return method_.time_step.value * grid_.cell() / (std::sqrt(all.wave) + std::sqrt(all.point));
+  const double wave = std::sqrt(all.wave), point = std::sqrt(all.point);
+  if (point > kFastest * wave) {
+    std::ostringstream message;
+    message << "step " << steps_ + 1 << ", t = " << time_ << " s: a point moves at " << point
+            << " m/s, more than " << kFastest << " times the wave speed of " << wave
+            << " m/s; likely cause: a given velocity, or a force on a point without mass around it";
+    throw Diverged(message.str(), steps_ + 1, time_, fastest_point());
+  }
+  return method_.time_step.value * grid_.cell() / (wave + point);
+}
+
+int Solver::fastest_point() const {
+  const auto square = [&](int k) {
+    const double* m = points_.motion.data() + 4 * k;
+    return m[2] * m[2] + m[3] * m[3];
+  };
+  int fastest = 0;
+  for (int k = 1; k < points_.size; ++k)
+    if (square(k) > square(fastest)) fastest = k;
+  return points_.number[fastest];
 }
 
 double Solver::narrowest_width() const {

@@ -101,6 +101,7 @@ class Solver {
   double courant_limit_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
   double narrowest_width() const;
+  int fastest_point() const;
 
   Method method_;
   InstructionSet instruction_set_;

@@ -36,9 +36,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> None:
-    for file in (options.summary, options.figures):
-        if file is not None and not Path(file).parent.is_dir():
-            raise ValueError(f"{file} must be in a directory that exists")
+    figure_directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
+    _check_file("--output", options.output)
+    _check_file("--summary", options.summary)
+    if Path(figure_directory).is_file():
+        raise ValueError(f"--figures must be a directory, got the file {figure_directory!r}")
     run = gs.simulate(
         reference.soil_slope(options.reading, options.cell),
         options.duration,
@@ -57,9 +59,16 @@ def _run(options: argparse.Namespace) -> None:
     print(_comparison(summary, options.reading))
     if options.summary is not None:
         Path(options.summary).write_text(json.dumps(summary, indent=2) + "\n")
-    directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
-    figures.write_figures(run, directory, reference.PAPER)
-    print(f"run: {options.output}   figures: {directory}{os.sep}")
+    figures.write_figures(run, figure_directory, reference.PAPER)
+    print(f"run: {options.output}   figures: {figure_directory}{os.sep}")
+
+
+def _check_file(option: str, path: str | None) -> None:
+    """Refuse, before any work is done, a file that could not be written after it."""
+    if path is None:
+        return
+    if Path(path).is_dir() or not Path(path).absolute().parent.is_dir():
+        raise ValueError(f"{option} must be a file in a directory that exists, got {path!r}")
 
 
 def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
@@ -91,6 +100,7 @@ def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
 
 
 def _bench(options: argparse.Namespace) -> None:
+    _check_file("--json", options.json)
     measurements = [
         benchmark.measure(points, threads)
         for points in options.points

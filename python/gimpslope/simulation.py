@@ -17,6 +17,7 @@ import numpy as np
 from tqdm import tqdm
 
 from . import _check
+from ._check import FloatArray
 from .io.hdf5 import FIELDS, STAGES, RunWriter
 from .method import Method
 from .run import Run, summarise
@@ -70,7 +71,7 @@ def simulate(
 
     After any error, Ctrl-C included, the file holds all that was computed and says how it ended.
     """
-    stages = Stages() if stages is None else stages
+    stages = _check.instance("stages", stages or Stages(), Stages, "Stages")
     if duration is not None:
         stages = replace(stages, slide=replace(stages.slide, duration=duration))
     simulation = Simulation(scene, method, stages)
@@ -101,9 +102,9 @@ class Simulation:
     def __init__(
         self, scene: Scene, method: Method | None = None, stages: Stages | None = None
     ) -> None:
-        self.scene = scene
-        self.method = Method() if method is None else method
-        self.stages = Stages() if stages is None else stages
+        self.scene = _check.instance("scene", scene, Scene, "a Scene")
+        self.method = _check.instance("method", method or Method(), Method, "a Method")
+        self.stages = _check.instance("stages", stages or Stages(), Stages, "Stages")
         self.solver = Solver.of(scene, self.method, elastic=True)
 
     def load(self, recorder: Recorder) -> None:
@@ -113,7 +114,7 @@ class Simulation:
         self.solver.set_damping(*self.stages.settling.to_core())
         recorder.start("gravity", ramp)
         while self.solver.time < ramp:
-            recorder.advance(min(self.solver.time + recorder.energy_interval, ramp))
+            recorder.advance(min(recorder.next_time(), ramp))
 
     def settle(self, recorder: Recorder) -> None:
         """Damping brings the slope to rest.
@@ -131,9 +132,10 @@ class Simulation:
             if self.solver.time - start >= settling.limit:
                 raise NotSettledError(
                     f"not at rest after settling for limit = {settling.limit} s: kinetic over "
-                    f"potential energy is {ratio:.3g}, above ratio = {settling.ratio}"
+                    f"potential energy, {ratio:.3g} now, has not stayed below ratio = "
+                    f"{settling.ratio} for {window:.3g} s, in which a wave crosses the scene twice"
                 )
-            row = recorder.advance(self.solver.time + recorder.energy_interval)
+            row = recorder.advance(recorder.next_time())
             ratio = row["kinetic"] / (row["potential"] - self._lowest_potential())
             if ratio > settling.ratio:
                 calm_since = self.solver.time
@@ -187,7 +189,7 @@ class Recorder:
         snapshot_times: Sequence[float],
         progress: bool,
     ) -> None:
-        self.energy_interval = _check.positive("energy_interval", energy_interval)
+        self._interval = _check.positive("energy_interval", energy_interval)
         self.detail = ""
         self._simulation = simulation
         self._solver = simulation.solver
@@ -195,12 +197,14 @@ class Recorder:
         self._snapshot_times = _times(
             simulation.stages.slide.duration,
             _check.positive("snapshot_interval", snapshot_interval),
-            [_check.not_negative("snapshot_times", time) for time in snapshot_times],
+            _check.array("snapshot_times", snapshot_times or (0.0,), ("k",)),
         )
         self._stage = 0
         self._bar: tqdm[Any] | None = None
         self._rows: list[dict[str, float]] = []
-        self._next_energy = 0.0
+        self._rows_end = 0
+        self._stage_start = 0.0
+        self._intervals = 0
         self._seconds = 0.0
         self._steps = 0
         self._flushed = clock.monotonic()
@@ -212,7 +216,7 @@ class Recorder:
             version=version("gimpslope"),
             instruction_set=self._solver.instruction_set,
             threads=self._solver.threads,
-            overwrite=overwrite,
+            overwrite=_check.flag("overwrite", overwrite),
         )
         self._write_points()
 
@@ -243,15 +247,18 @@ class Recorder:
             bar_format="{desc} {percentage:3.0f}%|{bar}| {n:.2f} of {total:.2f} s "
             "[{elapsed}<{remaining}{postfix}]",
         )
-        self._bar_start = self._solver.time
+        self._stage_start = self._solver.time
+        self._intervals = 0
         self._row()
         if stage == "slide":
             self._snapshot_if_due()
 
     def next_time(self) -> float:
-        """When the next row or snapshot of the slide is due, s."""
-        due = self._next_energy
-        return min(due, self._snapshot_times[0]) if self._snapshot_times else due
+        """When the next row, or snapshot of the slide, is due, s."""
+        due = self._next_row()
+        if STAGES[self._stage] == "slide" and self._snapshot_times:
+            due = min(due, self._snapshot_times[0])
+        return due
 
     def advance(self, until: float) -> dict[str, float]:
         """Step to the time `until` and record what is due; the energies then."""
@@ -271,7 +278,6 @@ class Recorder:
 
     def release(self, energy: float, settling_time: float, settling_ratio: float) -> None:
         """Record the trigger: the points now are the reference of all displacements."""
-        self._next_energy = 0.0
         self._write_points()
         self._writer.write_trigger(
             energy_released=energy, settling_time=settling_time, settling_ratio=settling_ratio
@@ -286,12 +292,18 @@ class Recorder:
             **energies._asdict(),
         }
         self._rows.append(row)
-        self._next_energy = self._solver.time + self.energy_interval
+        self._rows_end = self._solver.steps
+        while self._next_row() <= self._solver.time:
+            self._intervals += 1
         return row
+
+    def _next_row(self) -> float:
+        """Counted in intervals: times that are summed up drift."""
+        return round(self._stage_start + (self._intervals + 1) * self._interval, 12)
 
     def _snapshot_if_due(self) -> None:
         due = False
-        while self._snapshot_times and self._snapshot_times[0] <= self._solver.time * (1 + 1e-12):
+        while self._snapshot_times and self._snapshot_times[0] <= self._solver.time:
             self._snapshot_times.pop(0)
             due = True
         if due:
@@ -327,6 +339,8 @@ class Recorder:
         self._flushed = clock.monotonic()
 
     def _finish(self, status: str, detail: str) -> None:
+        if self._rows_end != self._solver.steps:
+            self._row()
         self._hand_over_rows()
         if STAGES[self._stage] == "slide":
             self._writer.write_final(self._solver.time, self._fields())
@@ -337,7 +351,7 @@ class Recorder:
         if self._bar is not None and not self._bar.disable:
             rate = self._steps * len(self._solver) / max(self._seconds, 1e-9) / 1e6
             self._bar.set_postfix_str(f"{rate:.1f} M point-steps/s", refresh=False)
-            self._bar.update(self._solver.time - self._bar_start - self._bar.n)
+            self._bar.update(self._solver.time - self._stage_start - self._bar.n)
 
     @contextmanager
     def _timed(self) -> Iterator[None]:
@@ -348,9 +362,10 @@ class Recorder:
             self._seconds += clock.perf_counter() - start
 
 
-def _times(duration: float, interval: float, further: Sequence[float]) -> list[float]:
+def _times(duration: float, interval: float, further: FloatArray) -> list[float]:
     """Times of snapshots within the duration, in order: every interval, further ones, the end."""
-    regular = np.arange(0.0, duration, interval)
-    every = np.concatenate([regular, np.asarray(further, dtype=float), [duration]])
-    rounded: list[float] = np.unique(np.round(every[every <= duration], 9)).tolist()
+    if further.min() < 0:
+        raise ValueError(f"snapshot_times must be numbers >= 0, got {further.min()}")
+    every = np.concatenate([np.arange(0.0, duration, interval), further, [duration]])
+    rounded: list[float] = np.unique(np.round(every[every <= duration], 12)).tolist()
     return rounded

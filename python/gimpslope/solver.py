@@ -74,9 +74,10 @@ class Solver:
     ) -> None:
         if wall_positions is None and walls != _ALL_FREE:
             raise ValueError(f"wall_positions must be given with walls, got None with {walls}")
-        n = len(points)
+        at_walls = _check.array("wall_positions", wall_positions or (0.0,) * 4, (4,))
+        method = _check.instance("method", method or Method(), Method, "a Method")
+        n = len(_check.instance("points", points, Points, "Points"))
         at_rest = np.zeros((n, 2))
-        method = Method() if method is None else method
         self._core = _core.Solver(
             points.position,
             at_rest if velocity is None else _check.array("velocity", velocity, (n, 2)),
@@ -87,7 +88,7 @@ class Solver:
             [material.to_core() for material in materials],
             cell=cell,
             origin=origin,
-            walls=walls.to_core((0.0,) * 4 if wall_positions is None else wall_positions),
+            walls=walls.to_core(at_walls.tolist()),
             instruction_set=instruction_set,
             **method.to_core(),
         )

@@ -122,12 +122,6 @@ def test_refused_values(words: str, name: str, capsys: pytest.CaptureFixture[str
     assert not Path("soil.h5").exists()
 
 
-def defect(reason: str) -> pytest.MarkDecorator:
-    """A known defect: the test fails as soon as it is mended, and then loses this mark."""
-    return pytest.mark.xfail(strict=True, reason=reason)
-
-
-@defect("found only when the run is over, or told without the parameter's name")
 @pytest.mark.parametrize(
     ("words", "name"),
     [
@@ -190,9 +184,9 @@ def test_bench(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPat
     "words",
     [
         "--threads 0",
-        pytest.param("--points 0", marks=defect("ZeroDivisionError")),
-        pytest.param("--points -5", marks=defect("a complex cell is refused instead")),
-        pytest.param("--json nowhere/b.json", marks=defect("found only after measuring")),
+        pytest.param("--points 0"),
+        pytest.param("--points -5"),
+        pytest.param("--json nowhere/b.json"),
     ],
 )
 def test_bench_refuses(

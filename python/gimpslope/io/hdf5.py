@@ -314,7 +314,7 @@ def _opened(path: str | PathLike[str]) -> Iterator[h5py.File]:
         raise FileNotFoundError(f"path must name a run file, got {str(path)!r}, which is no file")
     if not h5py.is_hdf5(path):
         raise ValueError(f"path must name a run file, got {str(path)!r}, which is not HDF5")
-    with h5py.File(path, "r", locking=False) as file:
+    with h5py.File(path, "r") as file:
         kind, version = file.attrs.get("format"), file.attrs.get("format_version")
         if kind != FORMAT or version != FORMAT_VERSION:
             raise ValueError(

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from .. import _check
 from ..scene import Points
 from ..solver import Solver
 from . import reference
@@ -41,7 +42,7 @@ def measure(points: int = 23_490, threads: int = 1, instruction_set: str = "") -
     The cell is chosen for about the given number of points (23,490 at 0.1 m), and the points are
     displaced by up to a quarter of their spacing: a regular lattice flatters the memory.
     """
-    cell = 0.1 * (23_490 / points) ** 0.5
+    cell = 0.1 * (23_490 / _check.whole("points", points, 10)) ** 0.5
     scene = reference.soil_slope(cell=cell)
     solver = Solver(
         _displaced(scene.points, scene.spacing / 4),
