@@ -36,9 +36,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> None:
-    figure_directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
     _check_file("--output", options.output)
     _check_file("--summary", options.summary)
+    figure_directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
     if Path(figure_directory).is_file():
         raise ValueError(f"--figures must be a directory, got the file {figure_directory!r}")
     run = gs.simulate(

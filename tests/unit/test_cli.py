@@ -107,7 +107,6 @@ def test_progress_shows_time_speed_and_what_is_left(
         ("--reading favourite", "--reading"),
         ("--colour red", "--colour"),
         ("--summary nowhere/s.json", "nowhere"),
-        ("--figures nowhere/maps", "nowhere"),
     ],
 )
 def test_refused_values(words: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
