@@ -36,6 +36,13 @@ struct Blend {
   }
 };
 
+/// Largest stable Courant number c dt / h. The domains of contiguous points sum up to bilinear
+/// finite elements with lumped masses, whose frequencies in plane strain stay below omega = 2 c /
+/// h, and dt = 2 / omega. Points that have come apart share their nodes with others and were stable
+/// beyond it at every place tried; linear hats have no such bound, and the classic condition is
+/// taken.
+constexpr double kCourantLimit = 1.0;
+
 /// A fixed step in s, or the Courant number C of dt = C h / (c + |v|).
 struct TimeStep {
   enum class Kind { fixed, courant };

@@ -33,6 +33,7 @@ inline void small_rotation(double angle, double& cosine, double& sine) {
 /// that holds a larger angle, or one that is not finite, takes the library's functions.
 inline void rotation(int n, const double* angle, double* cosine, double* sine) {
   double largest = 0.0;
+#pragma omp simd reduction(max : largest)
   for (int k = 0; k < n; ++k) {
     small_rotation(angle[k], cosine[k], sine[k]);
     const double size = std::abs(angle[k]);

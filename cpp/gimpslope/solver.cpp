@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "error.hpp"
-#include "stability.hpp"
 
 namespace gimpslope {
 namespace {
@@ -312,7 +311,7 @@ void Solver::check_step(const TimeStep& step, const std::vector<Material>& mater
   const char* name = fixed ? "time_step" : "courant";
   require(step.value > 0.0 && std::isfinite(step.value), name, step.value, "positive and finite");
   if (fixed) alpha_of(step.value);
-  const double limit = fixed ? stable_time_step_of(materials) : courant_limit_of(materials);
+  const double limit = fixed ? stable_time_step_of(materials) : kCourantLimit;
   if (method_.allow_unstable || step.value <= limit) return;
   std::ostringstream rule;
   rule.precision(6);
@@ -326,9 +325,7 @@ void Solver::set_materials(std::vector<Material> materials) {
           std::to_string(materials.size()) + " materials",
           ("a list of " + std::to_string(materials_.size())).c_str());
   std::vector<Law> laws = laws_of(materials);
-  if (stable_time_step_of(materials) < stable_time_step() ||
-      courant_limit_of(materials) < courant_limit())
-    check_step(method_.time_step, materials);
+  if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);
   materials_ = std::move(materials);
 }
@@ -405,29 +402,12 @@ int Solver::fastest_point() const {
   return points_.number[fastest];
 }
 
-double Solver::narrowest_width() const {
-  if (points_.half_length.empty()) return width_;
-  const auto& l = points_.half_length;
-  return 2.0 * *std::min_element(l.begin(), l.end()) / grid_.cell();
-}
-
-double Solver::courant_limit_of(const std::vector<Material>& materials) const {
-  double limit = std::numeric_limits<double>::infinity();
-  for (const Material& m : materials)
-    limit = std::min(limit, gimpslope::courant_limit(method_.shape, narrowest_width(), m.poisson));
-  return limit;
-}
-
 double Solver::stable_time_step_of(const std::vector<Material>& materials) const {
-  std::vector<double> per_material;  // times the root of the wave modulus
-  for (const Material& m : materials)
-    per_material.push_back(gimpslope::courant_limit(method_.shape, narrowest_width(), m.poisson) *
-                           grid_.cell() / std::sqrt(m.wave_modulus()));
-  double limit = std::numeric_limits<double>::infinity();
+  double fastest = 0.0;
   for (int k = 0; k < points_.size; ++k)
-    limit = std::min(
-        limit, per_material[points_.material[k]] * std::sqrt(points_.mass[k] / points_.volume[k]));
-  return limit;
+    fastest = std::max(fastest, materials[points_.material[k]].wave_modulus() * points_.volume[k] /
+                                    points_.mass[k]);
+  return kCourantLimit * grid_.cell() / std::sqrt(fastest);
 }
 
 double Solver::alpha_of(double dt) const {

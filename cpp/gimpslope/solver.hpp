@@ -83,7 +83,6 @@ class Solver {
   InstructionSet instruction_set() const { return instruction_set_; }
   double time_step();                                                          // the next one, s
   double stable_time_step() const { return stable_time_step_of(materials_); }  // at present, s
-  double courant_limit() const { return courant_limit_of(materials_); }
   double alpha() { return alpha_of(time_step()); }  // share of PIC in the next step
   std::int64_t bytes() const;
 
@@ -98,9 +97,7 @@ class Solver {
   void damp_at_peak();
   void check_step(const TimeStep& step, const std::vector<Material>& materials) const;
   double stable_time_step_of(const std::vector<Material>& materials) const;
-  double courant_limit_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
-  double narrowest_width() const;
   int fastest_point() const;
 
   Method method_;

@@ -40,7 +40,7 @@ struct NodeRange {
   std::int32_t begin, end;
 };
 
-/// Four doubles a node. `momentum` {m, m vx, m vy, -}, `velocity` {vx, vx, vy, vy} and `force`
+/// Four doubles a node. `momentum` {m, m, m vx, m vy}, `velocity` {vx, vx, vy, vy} and `force`
 /// {fx, fx, fy, fy} (the sum of each pair is the force) are laid out so that one multiplication by
 /// {S,x S S,x S} serves both components; `update` {dt vx, dt vy, bx, by} is what a point adds to
 /// its motion.

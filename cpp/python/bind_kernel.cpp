@@ -43,6 +43,7 @@ py::tuple return_stress(const Material& material, const Doubles& stress) {
 }  // namespace
 
 void bind_kernel(py::module_& m) {
+  m.attr("courant_limit") = kCourantLimit;
   m.def("instruction_sets", [] {
     std::vector<std::string> names;
     for (const InstructionSet set : available_instruction_sets()) names.emplace_back(name(set));

@@ -237,7 +237,6 @@ void bind_solver(py::module_& m) {
                              [](const Solver& s) { return name(s.instruction_set()); })
       .def_property_readonly("time_step", &Solver::time_step)
       .def_property_readonly("stable_time_step", &Solver::stable_time_step)
-      .def_property_readonly("courant_limit", &Solver::courant_limit)
       .def_property_readonly("alpha", &Solver::alpha)
       .def_property_readonly("bytes", &Solver::bytes);
 }

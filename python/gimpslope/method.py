@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from . import _check
+from . import _check, _core
 from ._record import Record
 
 Shape = Literal["linear", "ugimp", "cpgimp"]
@@ -121,9 +121,11 @@ class Method(Record):
         if self.courant is not None:
             self._store(courant=_check.positive("courant", self.courant))
         self._given("courant", "time_step")
-        if self.courant is not None and self.courant > 1 and not self.allow_unstable:
+        limit = _core.courant_limit
+        if self.courant is not None and self.courant > limit and not self.allow_unstable:
             raise ValueError(
-                f"courant must be a number in (0, 1] unless allow_unstable, got {self.courant}"
+                f"courant must be a number in (0, {limit:g}] unless allow_unstable is set, "
+                f"got {self.courant}"
             )
 
     def _given(self, *names: str) -> tuple[str, float] | None:

@@ -17,7 +17,8 @@ struct Usf {
       for_each_slab(view, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
           Weights<Shape> weights;
-          evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
+          evaluate<Shape, kOwnDomain, Need::values>(view, block.begin, block.end - block.begin,
+                                                    weights);
           scatter_momentum(view, block.begin, block.end - block.begin, weights);
         });
       });
@@ -48,11 +49,11 @@ struct Usf {
                          Report& report) {
     const int begin = block.begin, n = block.end - block.begin;
     Weights<Shape> weights;
-    evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+    evaluate<Shape, kOwnDomain, Need::values>(view, begin, n, weights);
     move_points(view, begin, n, input.alpha, weights, report);
     if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
     if (report.lost >= 0) return;
-    evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+    evaluate<Shape, kOwnDomain, Need::values>(view, begin, n, weights);
     scatter_momentum(view, begin, n, weights);
   }
 };

@@ -15,15 +15,30 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// of one cell between two sorts, and points are sorted once the travel has passed half a cell.
 constexpr double kFarthestStep = 0.5;
 
+constexpr double kHuge = 1e300;
+
+/// The first of the points whose change is not finite or takes it too far.
+inline int first_too_far(int n, double per_cell, const double* change) {
+  for (int k = 0; k < n; ++k) {
+    const double* c = change + 4 * k;
+    const bool near =
+        per_cell * std::abs(c[0]) <= kFarthestStep && per_cell * std::abs(c[1]) <= kFarthestStep;
+    if (!near || !(std::abs(c[2]) + std::abs(c[3]) <= kHuge)) return k;
+  }
+  return n - 1;
+}
+
 /// Velocity (paper eq. 26) and place: motion = {x, y, (1-alpha) vx, (1-alpha) vy} + sum S update.
+/// The points of a block move together or, if one of them would go too far, not at all.
 template <class Shape>
 void move_points(const View& view, int begin, int n, double alpha, const Weights<Shape>& weights,
                  Report& report) {
   const double* update = view.grid.update;
   const int stride = view.grid.stride;
-  const double per_cell = 1.0 / view.grid.cell;
   const Quad keep(1.0, 1.0, 1.0 - alpha, 1.0 - alpha);
   double* motion = view.points.motion + 4 * begin;
+  alignas(64) double change[4 * kBlock];
+  Quad largest = Quad::Zero(), sum_of_all = Quad::Zero();  // the sum is NaN if any change is
   for (int k = 0; k < n; ++k) {
     const double* first = update + 4 * weights.first[k];
     Quad sum = Quad::Zero();
@@ -33,15 +48,19 @@ void move_points(const View& view, int begin, int n, double alpha, const Weights
       for (int i = 1; i < Shape::nodes; ++i) along += quad(row + 4 * i) * weights.x[i][k];
       sum += along * weights.y[j][k];
     }
-    const double dx = per_cell * std::abs(sum[0]), dy = per_cell * std::abs(sum[1]);
-    if (!(dx <= kFarthestStep && dy <= kFarthestStep)) {  // true of NaN, too
-      report.lost = begin + k;
-      return;
-    }
-    const double farther = dx > dy ? dx : dy;
-    report.travel = farther > report.travel ? farther : report.travel;
-    quad(motion + 4 * k) = keep * quad(motion + 4 * k) + sum;
+    quad(change + 4 * k) = sum;
+    largest = largest.max(sum.abs());
+    sum_of_all += sum;
   }
+  const double per_cell = 1.0 / view.grid.cell;
+  const double travel = per_cell * (largest[0] > largest[1] ? largest[0] : largest[1]);
+  if (!(travel <= kFarthestStep && std::abs(sum_of_all.sum()) <= kHuge)) {
+    report.lost = begin + first_too_far(n, per_cell, change);
+    return;
+  }
+  report.travel = travel > report.travel ? travel : report.travel;
+  for (int k = 0; k < n; ++k)
+    quad(motion + 4 * k) = keep * quad(motion + 4 * k) + quad(change + 4 * k);
 }
 
 /// New domains, how far their edges moved, and the widest one.

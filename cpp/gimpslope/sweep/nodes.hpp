@@ -39,8 +39,8 @@ inline void start_nodes(const GridView& g, int row) {
   const auto velocity = [&](int node, double* v) {
     const double* m = g.momentum + 4 * node;
     const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
-    v[0] = inverse * m[1];
-    v[1] = inverse * m[2];
+    v[0] = inverse * m[2];
+    v[1] = inverse * m[3];
   };
   const auto set = [&](int node, const double* v) {
     quad(g.velocity + 4 * node) = Quad(v[0], v[0], v[1], v[1]);
@@ -78,8 +78,8 @@ inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
     };
     fx -= step.local_damping * std::abs(fx) * sign(shown[0]);
     fy -= step.local_damping * std::abs(fy) * sign(shown[2]);
-    before[0] = inverse * m[1];
-    before[1] = inverse * m[2];
+    before[0] = inverse * m[2];
+    before[1] = inverse * m[3];
     v[0] = before[0] + step.dt * inverse * fx;
     v[1] = before[1] + step.dt * inverse * fy;
   };

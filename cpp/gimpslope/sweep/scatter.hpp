@@ -46,10 +46,10 @@ template <class Shape>
 void scatter_momentum(const View& view, int begin, int n, const Weights<Shape>& weights) {
   const double* motion = view.points.motion + 4 * begin;
   const double* mass = view.points.mass + begin;
+  const Quad masses(1.0, 1.0, 0.0, 0.0), velocities(0.0, 0.0, 1.0, 1.0);
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const double m = mass[k];
-    const Quad point(m, m * motion[4 * k + 2], m * motion[4 * k + 3], 0.0);
+    const Quad point = mass[k] * (velocities * quad(motion + 4 * k) + masses);
     nodes.move_to(weights.first[k]);
     for (int j = 0; j < Shape::nodes; ++j) {
       const Quad row = point * weights.y[j][k];

@@ -15,6 +15,7 @@ inline void measure_speeds(const View& view, Speeds* speeds) {
       Speeds largest;
       for_each_block(view, slab, [&](const Block& block) {
         double point = 0.0, specific_volume = 0.0;
+#pragma omp simd reduction(max : point, specific_volume)
         for (int k = block.begin; k < block.end; ++k) {
           const double vx = p.motion[4 * k + 2], vy = p.motion[4 * k + 3];
           const double square = vx * vx + vy * vy;

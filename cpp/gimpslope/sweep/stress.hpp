@@ -56,6 +56,7 @@ inline void update_deformation(int n, const double* gradient, double factor, dou
 inline void update_volume(const View& view, int begin, int n, double dt, Strains& s) {
   const double factor = dt / view.grid.cell;
   double* volume = view.points.volume + begin;
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
     s.xx[k] = factor * s.gradient[4 * k];
     s.yy[k] = factor * s.gradient[4 * k + 3];
@@ -63,6 +64,7 @@ inline void update_volume(const View& view, int begin, int n, double dt, Strains
     s.turn[k] = factor * (s.gradient[4 * k + 2] - s.gradient[4 * k + 1]);
   }
   if (view.volume_update == VolumeUpdate::linear) {
+#pragma omp simd
     for (int k = 0; k < n; ++k) volume[k] *= 1.0 + (s.xx[k] + s.yy[k]);
   } else {
     for (int k = 0; k < n; ++k) volume[k] *= std::exp(s.xx[k] + s.yy[k]);
@@ -73,17 +75,19 @@ inline void update_volume(const View& view, int begin, int n, double dt, Strains
 template <class Constants>
 void update_stress(const View& view, int begin, int n, const Constants& law, const Strains& s) {
   const PointsView& p = view.points;
-  double* __restrict xx = p.stress_xx + begin;
-  double* __restrict yy = p.stress_yy + begin;
-  double* __restrict zz = p.stress_zz + begin;
-  double* __restrict xy = p.stress_xy + begin;
-  double* __restrict plastic_strain = p.plastic_strain + begin;
+  double* xx = p.stress_xx + begin;
+  double* yy = p.stress_yy + begin;
+  double* zz = p.stress_zz + begin;
+  double* xy = p.stress_xy + begin;
+  double* plastic_strain = p.plastic_strain + begin;
+  const Constants constants = law;
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
     const double middle = 0.5 * (xx[k] + yy[k]), half = 0.5 * (xx[k] - yy[k]);
     const double turned = half * s.cosine[k] - xy[k] * s.sine[k];
     Stress stress{middle + turned, middle - turned, zz[k], half * s.sine[k] + xy[k] * s.cosine[k]};
     double strain = plastic_strain[k];
-    update(law, stress, {s.xx[k], s.yy[k], s.xy[k]}, strain);
+    update(constants, stress, {s.xx[k], s.yy[k], s.xy[k]}, strain);
     xx[k] = stress.xx;
     yy[k] = stress.yy;
     zz[k] = stress.zz;
@@ -95,6 +99,7 @@ void update_stress(const View& view, int begin, int n, const Constants& law, con
 inline void point_forces(const View& view, int begin, int n, double* forces) {
   const PointsView& p = view.points;
   const double per_cell = -1.0 / view.grid.cell;
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
     const double volume = per_cell * p.volume[begin + k];
     const double shear = volume * p.stress_xy[begin + k];
@@ -110,7 +115,7 @@ void stress_block(const View& view, const StepInput& input, const Block& block) 
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape> weights;
   Strains strains;
-  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
   gather_gradient(view, n, weights, strains.gradient);
   if (view.points.deformation != nullptr) {
     update_deformation(n, strains.gradient, input.dt / view.grid.cell,

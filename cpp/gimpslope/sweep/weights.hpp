@@ -16,9 +16,11 @@ struct Weights {
   double dx[nodes][kBlock], dy[nodes][kBlock];
 };
 
+enum class Need { values, gradients };  // gradients: values and derivatives
+
 /// Shape functions of the n points from `begin` on. With kOwnDomain each point has its own
 /// half-lengths, otherwise all share one.
-template <class Shape, bool kOwnDomain>
+template <class Shape, bool kOwnDomain, Need kNeed>
 void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
   const GridView& grid = view.grid;
   const double* motion = view.points.motion + 4 * begin;
@@ -28,6 +30,7 @@ void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
   const int stride = grid.stride;
   const double common = Shape::extended ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::extended ? 1.0 / common : 0.0;
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
     double width_x = common, width_y = common;
     double inverse_x = common_inverse, inverse_y = common_inverse;
@@ -44,9 +47,15 @@ void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
 
     double w[Shape::nodes], d[Shape::nodes];
     Shape::evaluate(x - column, width_x, inverse_x, w, d);
-    for (int i = 0; i < Shape::nodes; ++i) out.x[i][k] = w[i], out.dx[i][k] = d[i];
+    for (int i = 0; i < Shape::nodes; ++i) {
+      out.x[i][k] = w[i];
+      if constexpr (kNeed == Need::gradients) out.dx[i][k] = d[i];
+    }
     Shape::evaluate(y - row, width_y, inverse_y, w, d);
-    for (int i = 0; i < Shape::nodes; ++i) out.y[i][k] = w[i], out.dy[i][k] = d[i];
+    for (int i = 0; i < Shape::nodes; ++i) {
+      out.y[i][k] = w[i];
+      if constexpr (kNeed == Need::gradients) out.dy[i][k] = d[i];
+    }
   }
 }
 
