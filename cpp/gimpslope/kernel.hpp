@@ -7,12 +7,12 @@
 namespace gimpslope {
 
 /// One combination. `prepare` brings mass and momentum of the points to cleared nodes; `step` takes
-/// one step from there and leaves the nodes prepared for the next. `reports` and `speeds` have one
-/// entry a slab.
+/// one step from there and leaves the nodes prepared for the next. `reports` has one entry a
+/// slab.
 struct Kernel {
   void (*prepare)(const View& view);
   void (*step)(const View& view, const StepInput& input, Report* reports);
-  void (*measure_speeds)(const View& view, Speeds* speeds);
+  void (*measure_speeds)(const View& view, Report* reports);
 };
 
 /// Shape functions as compiled: GIMP with one half-length for all points or one for each, and with

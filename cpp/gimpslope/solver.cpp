@@ -199,7 +199,6 @@ void Solver::prepare() {
       throw Diverged(message.str(), steps_, time_, -1);
     }
     reports_.resize(layout_.slabs.size());
-    speeds_.resize(layout_.slabs.size());
     travel_ = 0.0;
     steps_since_sort_ = 0;
     sorted_ = true;
@@ -216,8 +215,10 @@ void Solver::step(double dt) {
   prepare();
   const double share = alpha_of(dt);
   const double factor = gravity_.factor(time_ + dt);
-  const StepInput input{dt, share, gravity_.x * factor, gravity_.y * factor, damping_.local};
-  kernel_.step(view(), input, reports_.data());
+  const bool courant = method_.time_step.kind == TimeStep::Kind::courant;
+  kernel_.step(view(),
+               {dt, share, gravity_.x * factor, gravity_.y * factor, damping_.local, courant},
+               reports_.data());
 
   Report all;
   for (const Report& report : reports_) {
@@ -226,6 +227,8 @@ void Solver::step(double dt) {
     all.width = std::max(all.width, report.width);
     if (report.lost >= 0) fail(report.lost, dt);
   }
+  speeds_known_ = false;
+  if (courant) gather_speeds();
   time_ += dt;
   ++steps_;
   travel_ += all.travel + all.growth;
@@ -236,7 +239,7 @@ void Solver::step(double dt) {
 
 /// A point was refused its move: says which, and what is likely to have happened.
 void Solver::fail(int lost, double dt) {
-  sorted_ = nodes_ready_ = false;
+  sorted_ = nodes_ready_ = speeds_known_ = false;
   const double* motion = points_.motion.data() + 4 * lost;
   const Stress s = stress_of(points_, lost);
   const bool finite = std::isfinite(s.xx + s.yy + s.zz + s.xy + points_.volume[lost]);
@@ -284,7 +287,7 @@ void Solver::damp_at_peak() {
   for (int k = 0; k < points_.size; ++k)
     points_.motion[4 * k + 2] = points_.motion[4 * k + 3] = 0.0;
   last_kinetic_ = 0.0;
-  nodes_ready_ = false;
+  nodes_ready_ = speeds_known_ = false;
 }
 
 void Solver::set_gravity(const Gravity& gravity) {
@@ -328,6 +331,7 @@ void Solver::set_materials(std::vector<Material> materials) {
   if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);
   materials_ = std::move(materials);
+  speeds_known_ = false;
 }
 
 double Solver::release_stress() {
@@ -374,13 +378,11 @@ Energies Solver::energies() const {
 double Solver::time_step() {
   if (method_.time_step.kind == TimeStep::Kind::fixed) return method_.time_step.value;
   prepare();
-  kernel_.measure_speeds(view(), speeds_.data());
-  Speeds all;
-  for (const Speeds& slab : speeds_) {
-    all.point = std::max(all.point, slab.point);
-    all.wave = std::max(all.wave, slab.wave);
+  if (!speeds_known_) {
+    kernel_.measure_speeds(view(), reports_.data());
+    gather_speeds();
   }
-  const double wave = std::sqrt(all.wave), point = std::sqrt(all.point);
+  const double wave = std::sqrt(speeds_.wave), point = std::sqrt(speeds_.point);
   if (point > kFastest * wave) {
     std::ostringstream message;
     message << "step " << steps_ + 1 << ", t = " << time_ << " s: a point moves at " << point
@@ -389,6 +391,15 @@ double Solver::time_step() {
     throw Diverged(message.str(), steps_ + 1, time_, fastest_point());
   }
   return method_.time_step.value * grid_.cell() / (wave + point);
+}
+
+void Solver::gather_speeds() {
+  speeds_ = {};
+  for (const Report& report : reports_) {
+    speeds_.point = std::max(speeds_.point, report.speeds.point);
+    speeds_.wave = std::max(speeds_.wave, report.speeds.wave);
+  }
+  speeds_known_ = true;
 }
 
 int Solver::fastest_point() const {
@@ -460,7 +471,7 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
-  nodes_ready_ = false;
+  nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;
 }
 

@@ -98,6 +98,7 @@ class Solver {
   void check_step(const TimeStep& step, const std::vector<Material>& materials) const;
   double stable_time_step_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
+  void gather_speeds();
   int fastest_point() const;
 
   Method method_;
@@ -113,7 +114,8 @@ class Solver {
   Gravity gravity_;
   Damping damping_;
   std::vector<Report> reports_;  // of each slab
-  std::vector<Speeds> speeds_;
+  Speeds speeds_;                // the largest of all points
+  bool speeds_known_ = false;
   double half_length_ = 0.0;  // of all points where they are alike, otherwise their mean, m
   double width_ = 0.0;        // of the widest domain, cells
   double time_ = 0.0;

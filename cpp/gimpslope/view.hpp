@@ -73,6 +73,12 @@ struct StepInput {
   double dt, alpha;
   double gravity_x, gravity_y;
   double local_damping;
+  bool wants_speeds;
+};
+
+/// Largest squared speed, and largest squared wave speed.
+struct Speeds {
+  double point = 0.0, wave = 0.0;
 };
 
 /// What a slab reports of a step. Maxima do not depend on the order of the slabs.
@@ -80,12 +86,8 @@ struct Report {
   double travel = 0.0;     // largest displacement of a point, cells
   double growth = 0.0;     // largest change of a half-length, cells; the two add up at an edge
   double width = 0.0;      // largest domain width, cells
+  Speeds speeds;           // after the step, where asked for
   std::int32_t lost = -1;  // storage index of a point that moved or grew beyond the limit
-};
-
-/// Largest squared speed and largest volume per mass times wave modulus, i.e. squared wave speed.
-struct Speeds {
-  double point = 0.0, wave = 0.0;
 };
 
 }  // namespace gimpslope

@@ -5,6 +5,7 @@
 #include "../sweep/loops.hpp"
 #include "../sweep/move.hpp"
 #include "../sweep/nodes.hpp"
+#include "../sweep/speeds.hpp"
 #include "../sweep/stress.hpp"
 
 namespace gimpslope {
@@ -55,6 +56,7 @@ struct Usf {
     if (report.lost >= 0) return;
     evaluate<Shape, kOwnDomain, Need::values>(view, begin, n, weights);
     scatter_momentum(view, begin, n, weights);
+    if (input.wants_speeds) add_speeds(view, block, report.speeds);
   }
 };
 
