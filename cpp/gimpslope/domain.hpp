@@ -30,7 +30,7 @@ inline void update_domains(const View& view, int begin, int n) {
       for (int k = 0; k < n; ++k) {
         // Polar decomposition in 2D: U = (C + J I) / sqrt(tr C + 2 J), C = F^T F.
         const double* f = deformation + 4 * k;
-        const double jacobian = std::abs(f[0] * f[3] - f[1] * f[2]);
+        const double jacobian = std::fabs(f[0] * f[3] - f[1] * f[2]);
         const double cxx = f[0] * f[0] + f[2] * f[2], cyy = f[1] * f[1] + f[3] * f[3];
         const double divisor = std::sqrt(cxx + cyy + 2.0 * jacobian);
         half_length[2 * k] = reference[2 * k] * (cxx + jacobian) / divisor;

@@ -17,6 +17,13 @@ struct Diverged : std::runtime_error {
   std::int64_t point;
 };
 
+/// A number as messages show it.
+inline std::string text(double value) {
+  std::ostringstream shown;
+  shown << value;
+  return shown.str();
+}
+
 /// Refuses a parameter: names it, what is allowed, and its value.
 template <class Value>
 [[noreturn]] void refuse(const char* parameter, const Value& value, const std::string& rule) {

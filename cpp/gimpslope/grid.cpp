@@ -29,7 +29,7 @@ Grid::Grid(double cell, double x, double y, const std::array<Wall, 4>& walls)
     require(wall.friction >= 0.0 && std::isfinite(wall.friction), "friction", wall.friction,
             "zero or positive and finite at a wall");
     const double line = (wall.position - (side == left || side == right ? x : y)) / cell;
-    require(std::isfinite(line) && std::abs(line - std::round(line)) < 1e-6, kSideNames[side],
+    require(std::abs(line) < 1e9 && std::abs(line - std::round(line)) < 1e-6, kSideNames[side],
             wall.position, "on a grid line, a whole number of cells from the origin, in m");
     wall_node_[side] = static_cast<std::int32_t>(std::lround(line));
   }

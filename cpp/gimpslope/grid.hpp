@@ -32,9 +32,6 @@ class Grid {
   void activate(int row, NodeRange columns);
 
   void clear();
-  Cell low() const { return low_; }
-  int columns() const { return columns_; }
-  int rows() const { return rows_; }
   GridView view();
   std::int64_t bytes() const;
 

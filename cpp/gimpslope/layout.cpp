@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "error.hpp"
+#include "travel.hpp"
 
 namespace gimpslope {
 namespace {
@@ -48,6 +49,9 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
     high = {std::max(high.column, cell.column), std::max(high.row, cell.row)};
   }
 
+  grid.fit({low.column - kMargin, low.row - kMargin},
+           {high.column + reach - 1 + kMargin, high.row + reach - 1 + kMargin});
+
   std::vector<std::int32_t> order(points.size);
   std::iota(order.begin(), order.end(), 0);
   const auto row = [&](std::int32_t point) {
@@ -57,10 +61,6 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
           [&](std::int32_t point) { return cells[point].column - low.column; });
   sort_by(order, (high.row - low.row + 1) * materials,
           [&](std::int32_t point) { return row(point) * materials + points.material[point]; });
-
-  constexpr int margin = 1;
-  grid.fit({low.column - margin, low.row - margin},
-           {high.column + reach - 1 + margin, high.row + reach - 1 + margin});
 
   Layout layout;
   for (int k = 0; k < points.size; ++k) {
@@ -80,8 +80,8 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
     layout.slabs.back().end = static_cast<std::int32_t>(layout.blocks.size());
 
     const int column = cells[point].column - low.column;  // of the first node, less the margin
-    for (int j = 0; j < reach + 2 * margin; ++j)
-      grid.activate(row(point) + j, {column, column + reach + 2 * margin});
+    for (int j = 0; j < reach + 2 * kMargin; ++j)
+      grid.activate(row(point) + j, {column, column + reach + 2 * kMargin});
   }
   points.reorder(order);
   return layout;

@@ -9,17 +9,13 @@
 
 namespace gimpslope {
 
-/// Rows of cells in a slab. Between two sorts a point travels at most one cell, and it reaches up
-/// to five nodes: slabs of six rows leave every second one apart from the next.
-constexpr int kSlabRows = 6;
-
 struct Layout {
   std::vector<Block> blocks;
   std::vector<Slab> slabs;
 };
 
 /// Sorts the points by row, material and column of their first node, fits the grid's window to them
-/// with a margin of one cell, and marks the nodes that they can reach before the next sort.
+/// with a margin, and marks the nodes that they can reach before the next sort.
 /// `half_length` holds for points without their own; `reach` is the number of nodes a direction.
 Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials);
 

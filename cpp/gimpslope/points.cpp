@@ -7,9 +7,8 @@ namespace gimpslope {
 namespace {
 
 template <int kWidth, class T>
-void permute(T* data, const std::vector<std::int32_t>& order, Buffer<double>& scratch) {
-  static_assert(sizeof(T) <= sizeof(double));
-  T* sorted = reinterpret_cast<T*>(scratch.data());
+void permute(T* data, const std::vector<std::int32_t>& order, Buffer<T>& scratch) {
+  T* sorted = scratch.data();
   for (std::size_t k = 0; k < order.size(); ++k)
     for (int c = 0; c < kWidth; ++c) sorted[kWidth * k + c] = data[kWidth * order[k] + c];
   std::copy_n(sorted, kWidth * order.size(), data);
@@ -29,7 +28,8 @@ Points::Points(int n, bool own_domains, bool with_deformation)
       deformation(with_deformation ? 4 * n : 0),
       material(n),
       number(n),
-      scratch_(4 * n) {
+      scratch_(4 * n),
+      integer_scratch_(n) {
   std::iota(number.begin(), number.end(), 0);
   for (std::size_t k = 0; k < deformation.size(); k += 4) deformation[k] = deformation[k + 3] = 1.0;
 }
@@ -42,8 +42,8 @@ void Points::reorder(const std::vector<std::int32_t>& order) {
   for (Buffer<double>* pair : {&half_length, &domain_reference})
     if (!pair->empty()) permute<2>(pair->data(), order, scratch_);
   if (!deformation.empty()) permute<4>(deformation.data(), order, scratch_);
-  permute<1>(material.data(), order, scratch_);
-  permute<1>(number.data(), order, scratch_);
+  permute<1>(material.data(), order, integer_scratch_);
+  permute<1>(number.data(), order, integer_scratch_);
 }
 
 PointsView Points::view() {
@@ -64,7 +64,8 @@ PointsView Points::view() {
 }
 
 std::int64_t Points::bytes() const {
-  std::int64_t total = sizeof(std::int32_t) * (material.capacity() + number.capacity());
+  std::int64_t total = sizeof(std::int32_t) *
+                       (material.capacity() + number.capacity() + integer_scratch_.capacity());
   for (const Buffer<double>* b : {&motion, &stress, &volume, &mass, &plastic_strain, &half_length,
                                   &domain_reference, &deformation, &scratch_})
     total += sizeof(double) * b->capacity();

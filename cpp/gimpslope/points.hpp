@@ -32,6 +32,7 @@ struct Points {
 
  private:
   Buffer<double> scratch_;
+  Buffer<std::int32_t> integer_scratch_;
 };
 
 }  // namespace gimpslope

@@ -44,7 +44,8 @@ ShapeValues shape_functions(ShapeKind kind, std::span<const double> position,
                             std::array<double, 2> origin) {
   require(cell > 0.0 && std::isfinite(cell), "cell", cell, "positive and finite, in m");
   for (const double x : origin) require(std::isfinite(x), "origin", x, "finite, in m");
-  for (const double x : position) require(std::isfinite(x), "position", x, "finite, in m");
+  for (const double x : position)
+    require(std::abs(x) / cell < 1e9, "position", x, "finite and within 1e9 cells of zero, in m");
   if (kind == ShapeKind::linear) return evaluate_all<Linear>(position, half_length, cell, origin);
   double widest = 0.0;
   for (const double l : half_length) {

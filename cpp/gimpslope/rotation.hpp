@@ -1,4 +1,5 @@
-// The exact rotation of a plane stress state by the angle that a step turns a point.
+// The exact rotation of a stress state in its plane: cosine and sine of twice the angle that a step
+// turns a point.
 #pragma once
 
 #include <cmath>
@@ -30,13 +31,13 @@ inline void small_rotation(double angle, double& cosine, double& sine) {
 }
 
 /// Cosine and sine of n angles. A stable step turns a point by far less than kSmallAngle; a block
-/// that holds a larger angle, or one that is not finite, takes the library's functions.
+/// that holds a larger angle takes the library's functions.
 inline void rotation(int n, const double* angle, double* cosine, double* sine) {
   double largest = 0.0;
 #pragma omp simd reduction(max : largest)
   for (int k = 0; k < n; ++k) {
     small_rotation(angle[k], cosine[k], sine[k]);
-    const double size = std::abs(angle[k]);
+    const double size = std::fabs(angle[k]);
     largest = size > largest ? size : largest;
   }
   if (largest <= kSmallAngle) return;

@@ -7,14 +7,15 @@
 #include <sstream>
 #include <utility>
 
+#include "checks.hpp"
 #include "error.hpp"
+#include "travel.hpp"
 
 namespace gimpslope {
 namespace {
 
 constexpr int kStepsBetweenSorts = 50;
-constexpr double kFastest = 1000.0;          // speed of a point, in wave speeds
-constexpr double kTravelBetweenSorts = 0.5;  // cells; see kFarthestStep
+constexpr double kFastest = 1000.0;  // speed of a point, in wave speeds
 
 /// The points share one half-length unless they were given different ones, follow the deformation,
 /// or are wider than the common basis reaches.
@@ -30,57 +31,12 @@ bool keeps_deformation(const Method& method) {
          method.domain_update == DomainUpdate::deformation_diagonal;
 }
 
-void check_values(std::span<const double> values, std::size_t count, bool positive,
-                  const char* parameter) {
-  require(values.size() == count, parameter, std::to_string(values.size()) + " values",
-          (std::to_string(count) + " values").c_str());
-  for (const double value : values) {
-    require(std::isfinite(value), parameter, value, "finite");
-    require(!positive || value > 0.0, parameter, value, "positive");
-  }
-}
-
-void check(const InitialPoints& p, std::size_t materials, const Method& method) {
-  const std::size_t n = p.position.size() / 2;
-  require(n > 0 && n < (1u << 29), "position", std::to_string(n) + " points", "1 to 2^29 points");
-  check_values(p.position, 2 * n, false, "position");
-  check_values(p.velocity, 2 * n, false, "velocity");
-  check_values(p.half_length, 2 * n, method.shape != ShapeKind::linear, "half_length");
-  check_values(p.mass, n, true, "mass");
-  check_values(p.volume, n, true, "volume");
-  require(p.material.size() == n, "material", std::to_string(p.material.size()) + " values",
-          (std::to_string(n) + " values").c_str());
-  const std::string rule = "an index into the " + std::to_string(materials) + " materials";
-  for (const int m : p.material)
-    require(m >= 0 && static_cast<std::size_t>(m) < materials, "material", m, rule.c_str());
-}
-
 /// Room for the points, once they are known to be sound.
 Points room_for(const InitialPoints& given, std::size_t materials, const Method& method,
                 double cell) {
-  check(given, materials, method);
+  check(given, materials, method.shape);
   return Points(static_cast<int>(given.mass.size()), own_domains(given, method, cell),
                 keeps_deformation(method));
-}
-
-const Method& checked(const Method& m) {
-  const bool follows = m.domain_update != DomainUpdate::none;
-  require((m.shape == ShapeKind::cpgimp) == follows, "domain_update", follows ? "given" : "none",
-          "jacobian, stretch or deformation_diagonal with shape cpgimp, none with any other");
-  const double b = m.blend.value;
-  switch (m.blend.kind) {
-    case Blend::Kind::alpha:
-      require(b >= 0.0 && b <= 1.0, "alpha", b, "in [0, 1]");
-      break;
-    case Blend::Kind::viscosity:
-      require(b >= 0.0 && std::isfinite(b), "viscosity", b, "zero or positive and finite, in m2/s");
-      break;
-    case Blend::Kind::relaxation_time:
-      require(b > 0.0 && std::isfinite(b), "relaxation_time", b, "positive and finite, in s");
-      break;
-  }
-  require(m.threads >= 1 && m.threads <= 1024, "threads", m.threads, "in [1, 1024]");
-  return m;
 }
 
 std::vector<Law> laws_of(const std::vector<Material>& materials) {
@@ -92,25 +48,12 @@ std::vector<Law> laws_of(const std::vector<Material>& materials) {
   return laws;
 }
 
-/// Elastic energy per volume, J/m3.
-double strain_energy(const Material& m, const Stress& s) {
-  const double mean = (s.xx + s.yy + s.zz) / 3.0;
-  const double xx = s.xx - mean, yy = s.yy - mean, zz = s.zz - mean;
-  const double j2 = 0.5 * (xx * xx + yy * yy + zz * zz) + s.xy * s.xy;
-  return mean * mean / (2.0 * m.bulk_modulus()) + j2 / (2.0 * m.shear_modulus());
-}
-
-Stress stress_of(const Points& p, int k) {
-  const double* s = p.stress.data() + k;
-  return {s[0], s[p.size], s[2 * p.size], s[3 * p.size]};
-}
-
 }  // namespace
 
 Solver::Solver(const InitialPoints& given, std::vector<Material> materials, double cell,
                std::array<double, 2> origin, const std::array<Wall, 4>& walls, const Method& method,
                InstructionSet instruction_set)
-    : method_(checked(method)),
+    : method_((check(method), method)),
       instruction_set_(instruction_set),
       team_(std::make_unique<Team>(method.threads)),
       materials_(std::move(materials)),
@@ -119,9 +62,8 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
       points_(room_for(given, laws_.size(), method, cell)) {
   fill(given);
   choose_kernel();
-  set_time_step(method.time_step);
   prepare();
-  alpha_of(time_step());
+  set_time_step(method.time_step);
 }
 
 void Solver::fill(const InitialPoints& given) {
@@ -172,11 +114,12 @@ void Solver::advance(std::int64_t steps) {
 
 bool Solver::advance_to(double time, std::int64_t most) {
   require(std::isfinite(time), "time", time, "finite, in s");
-  constexpr double rounding = 1e-9;  // of a step
+  constexpr double rounding = 1e-6;  // of a step
   for (std::int64_t k = 0; time_ < time; ++k) {
     const double dt = time_step(), left = time - time_;
     if (left <= rounding * dt) {
       time_ = time;
+      time_carry_ = 0.0;
     } else if (k == most) {
       return false;
     } else {
@@ -194,10 +137,9 @@ void Solver::prepare() {
       layout_ = arrange(points_, grid_, half_length_, nodes, static_cast<int>(laws_.size()));
     } catch (const std::invalid_argument& scattered) {
       if (steps_ == 0) throw;
-      std::ostringstream message;
-      message << "step " << steps_ << ", t = " << time_ << " s: " << scattered.what();
-      throw Diverged(message.str(), steps_, time_, -1);
+      fail(scattered.what(), -1);
     }
+    stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
     travel_ = 0.0;
     steps_since_sort_ = 0;
@@ -212,8 +154,11 @@ void Solver::prepare() {
 }
 
 void Solver::step(double dt) {
+  if (!failure_.empty()) throw Diverged(failure_, steps_ + 1, time_, -1);
   prepare();
   const double share = alpha_of(dt);
+  if (!(share <= 1.0))
+    fail("the step of " + text(dt) + " s is too long for the velocity blend", -1);
   const double factor = gravity_.factor(time_ + dt);
   const bool courant = method_.time_step.kind == TimeStep::Kind::courant;
   kernel_.step(view(),
@@ -225,11 +170,13 @@ void Solver::step(double dt) {
     all.travel = std::max(all.travel, report.travel);
     all.growth = std::max(all.growth, report.growth);
     all.width = std::max(all.width, report.width);
-    if (report.lost >= 0) fail(report.lost, dt);
+    if (report.lost >= 0) fail_at(report.lost, dt);
   }
   speeds_known_ = false;
   if (courant) gather_speeds();
-  time_ += dt;
+  const double added = dt - time_carry_, later = time_ + added;  // Kahan's sum
+  time_carry_ = (later - time_) - added;
+  time_ = later;
   ++steps_;
   travel_ += all.travel + all.growth;
   if (++steps_since_sort_ >= kStepsBetweenSorts || travel_ > kTravelBetweenSorts) sorted_ = false;
@@ -237,28 +184,32 @@ void Solver::step(double dt) {
   if (damping_.kinetic) damp_at_peak();
 }
 
+/// Ends the run: part of a step may have been taken, and no other one can follow.
+void Solver::fail(const std::string& what, std::int64_t point) {
+  failure_ = "step " + std::to_string(steps_ + 1) + " from t = " + text(time_) + " s: " + what;
+  throw Diverged(failure_, steps_ + 1, time_, point);
+}
+
 /// A point was refused its move: says which, and what is likely to have happened.
-void Solver::fail(int lost, double dt) {
-  sorted_ = nodes_ready_ = speeds_known_ = false;
-  const double* motion = points_.motion.data() + 4 * lost;
-  const Stress s = stress_of(points_, lost);
-  const bool finite = std::isfinite(s.xx + s.yy + s.zz + s.xy + points_.volume[lost]);
-  const double stable = stable_time_step();
-  std::ostringstream message;
-  message.precision(6);
-  message << "step " << steps_ + 1 << ", t = " << time_ + dt << " s: point " << points_.number[lost]
-          << " at (" << motion[0] << ", " << motion[1] << ") m "
-          << (finite ? "would move or grow by more than half a cell in one step"
-                     : "has a stress that is not finite")
-          << "; likely cause: ";
-  if (dt > stable) {
-    message << "the time step of " << dt << " s is above the stable limit of " << stable << " s";
-  } else {
-    message << "speeds beyond the wave speed, an inverted domain, or points too far apart to share "
-               "nodes (time step "
-            << dt << " s, stable limit " << stable << " s)";
+void Solver::fail_at(int lost, double dt) {
+  const double* m = points_.motion.data() + 4 * lost;
+  const double speed = std::hypot(m[2], m[3]);
+  const double* s = points_.stress.data() + lost;
+  const int n = points_.size;
+  const bool finite = std::isfinite(s[0] + s[n] + s[2 * n] + s[3 * n] + points_.volume[lost]);
+  std::string cause = "an inverted domain, or points too far apart to share nodes";
+  if (speed * dt > kFarthestStep * cell()) {
+    cause = "its speed of " + text(speed) + " m/s";
+  } else if (dt > stable_at_sort_) {
+    cause = "the time step of " + text(dt) + " s is above the stable limit of " +
+            text(stable_at_sort_) + " s";
   }
-  throw Diverged(message.str(), steps_ + 1, time_ + dt, points_.number[lost]);
+  fail("point " + std::to_string(points_.number[lost]) + " at (" + text(m[0]) + ", " + text(m[1]) +
+           ") m " +
+           (finite ? "would move or grow by more than half a cell in one step"
+                   : "has a stress that is not finite") +
+           "; likely cause: " + cause,
+       points_.number[lost]);
 }
 
 /// Changes to the basis that the widest domain needs.
@@ -267,19 +218,18 @@ void Solver::follow_width(double width) {
   if (width_ > widest(Basis::gimp_wide)) {
     const auto& l = points_.half_length;
     const auto point = (std::max_element(l.begin(), l.end()) - l.begin()) / 2;
-    std::ostringstream message;
-    message << "step " << steps_ << ", t = " << time_ << " s: the domain of point "
-            << points_.number[point] << " is " << width_
-            << " cells wide, of 3 allowed; likely cause: shear or extension that domain_update "
-               "stretch or deformation_diagonal follows without bound (jacobian does not)";
-    throw Diverged(message.str(), steps_, time_, points_.number[point]);
+    fail("the domain of point " + std::to_string(points_.number[point]) + " is " + text(width_) +
+             " cells wide, of 3 allowed; likely cause: shear or extension that domain_update "
+             "stretch "
+             "or deformation_diagonal follows without bound (jacobian does not)",
+         points_.number[point]);
   }
   const Basis needed = width_ > widest(Basis::gimp_own) ? Basis::gimp_wide : Basis::gimp_own;
   if (needed != basis_) choose_kernel();
 }
 
 void Solver::damp_at_peak() {
-  const double kinetic = energies().kinetic;
+  const double kinetic = kinetic_energy();
   if (kinetic >= last_kinetic_) {
     last_kinetic_ = kinetic;
     return;
@@ -306,21 +256,24 @@ void Solver::set_damping(const Damping& damping) {
 
 void Solver::set_time_step(const TimeStep& step) {
   check_step(step, materials_);
-  method_.time_step = step;
+  const TimeStep before = std::exchange(method_.time_step, step);
+  try {
+    check_alpha(time_step());
+  } catch (const std::invalid_argument&) {
+    method_.time_step = before;
+    throw;
+  }
 }
 
 void Solver::check_step(const TimeStep& step, const std::vector<Material>& materials) const {
   const bool fixed = step.kind == TimeStep::Kind::fixed;
   const char* name = fixed ? "time_step" : "courant";
   require(step.value > 0.0 && std::isfinite(step.value), name, step.value, "positive and finite");
-  if (fixed) alpha_of(step.value);
   const double limit = fixed ? stable_time_step_of(materials) : kCourantLimit;
   if (method_.allow_unstable || step.value <= limit) return;
-  std::ostringstream rule;
-  rule.precision(6);
-  rule << "at most " << limit << (fixed ? " s" : "")
-       << ", the stable limit of this scene, unless allow_unstable is set";
-  refuse(name, step.value, rule.str());
+  refuse(name, step.value,
+         "at most " + text(limit) + (fixed ? " s" : "") +
+             ", the stable limit of this scene, unless allow_unstable is set");
 }
 
 void Solver::set_materials(std::vector<Material> materials) {
@@ -328,51 +281,17 @@ void Solver::set_materials(std::vector<Material> materials) {
           std::to_string(materials.size()) + " materials",
           ("a list of " + std::to_string(materials_.size())).c_str());
   std::vector<Law> laws = laws_of(materials);
+  // The same stiffness stays accepted, however the density has changed since the step was given.
   if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);
   materials_ = std::move(materials);
   speeds_known_ = false;
 }
 
-double Solver::release_stress() {
-  double released = 0.0;
-  for (int k = 0; k < points_.size; ++k) {
-    const int material = points_.material[k];
-    if (laws_[material].kind != LawKind::drucker_prager) continue;
-    const Stress before = stress_of(points_, k);
-    Stress after = before;
-    return_to_surface(laws_[material].drucker_prager, after, points_.plastic_strain[k]);
-    double* s = points_.stress.data() + k;
-    s[0] = after.xx;
-    s[points_.size] = after.yy;
-    s[2 * points_.size] = after.zz;
-    s[3 * points_.size] = after.xy;
-    released += points_.volume[k] * (strain_energy(materials_[material], before) -
-                                     strain_energy(materials_[material], after));
-  }
-  return released;
-}
-
 void Solver::reset_clock() {
-  time_ = 0.0;
+  time_ = time_carry_ = 0.0;
   steps_ = 0;
   std::fill(points_.plastic_strain.begin(), points_.plastic_strain.end(), 0.0);
-}
-
-Energies Solver::energies() const {
-  Energies sum{};
-  double fastest = 0.0;
-  for (int k = 0; k < points_.size; ++k) {
-    const double* m = points_.motion.data() + 4 * k;
-    const double square = m[2] * m[2] + m[3] * m[3];
-    fastest = std::max(fastest, square);
-    sum.kinetic += 0.5 * points_.mass[k] * square;
-    sum.potential -= points_.mass[k] * (gravity_.x * m[0] + gravity_.y * m[1]);
-    sum.elastic +=
-        points_.volume[k] * strain_energy(materials_[points_.material[k]], stress_of(points_, k));
-  }
-  sum.max_speed = std::sqrt(fastest);
-  return sum;
 }
 
 double Solver::time_step() {
@@ -384,11 +303,10 @@ double Solver::time_step() {
   }
   const double wave = std::sqrt(speeds_.wave), point = std::sqrt(speeds_.point);
   if (point > kFastest * wave) {
-    std::ostringstream message;
-    message << "step " << steps_ + 1 << ", t = " << time_ << " s: a point moves at " << point
-            << " m/s, more than " << kFastest << " times the wave speed of " << wave
-            << " m/s; likely cause: a given velocity, or a force on a point without mass around it";
-    throw Diverged(message.str(), steps_ + 1, time_, fastest_point());
+    fail("a point moves at " + text(point) + " m/s, more than " + text(kFastest) +
+             " times the wave speed of " + text(wave) +
+             " m/s; likely cause: a given velocity, or a force on a point without mass around it",
+         fastest_point());
   }
   return method_.time_step.value * grid_.cell() / (wave + point);
 }
@@ -422,63 +340,17 @@ double Solver::stable_time_step_of(const std::vector<Material>& materials) const
 }
 
 double Solver::alpha_of(double dt) const {
-  const double alpha = method_.blend.alpha(dt, grid_.cell(), half_length_);
-  if (alpha <= 1.0) return alpha;
+  return method_.blend.alpha(dt, grid_.cell(), half_length_);
+}
+
+void Solver::check_alpha(double dt) const {
+  const double alpha = alpha_of(dt);
+  if (alpha <= 1.0) return;
   const bool viscosity = method_.blend.kind == Blend::Kind::viscosity;
-  std::ostringstream rule;
-  rule << (viscosity ? "at most " : "at least ") << (viscosity ? method_.blend.value / alpha : dt)
-       << (viscosity ? " m2/s" : " s") << " at a step of " << dt
-       << " s, where the PIC share of a step reaches 1";
-  refuse(viscosity ? "viscosity" : "relaxation_time", method_.blend.value, rule.str());
-}
-
-FieldView Solver::field(const std::string& name) {
-  Points& p = points_;
-  if (name == "position") return {p.motion.data(), 4, 1, 2};
-  if (name == "velocity") return {p.motion.data() + 2, 4, 1, 2};
-  if (name == "stress") return {p.stress.data(), 1, p.size, 4};
-  if (name == "volume") return {p.volume.data(), 1, 1, 1};
-  if (name == "mass") return {p.mass.data(), 1, 1, 1};
-  if (name == "plastic_strain") return {p.plastic_strain.data(), 1, 1, 1};
-  if (name == "half_length" && !p.half_length.empty()) return {p.half_length.data(), 2, 1, 2};
-  if (name == "half_length" && method_.shape != ShapeKind::linear) return {&half_length_, 0, 0, 2};
-  if (name == "deformation_gradient" && !p.deformation.empty())
-    return {p.deformation.data(), 4, 1, 4};
-  require(false, "field", name,
-          "one of position, velocity, stress, volume, mass, plastic_strain, half_length (not with "
-          "shape linear), deformation_gradient (with cpgimp stretch or deformation_diagonal)");
-  return {};
-}
-
-std::vector<double> Solver::values(const std::string& name) {
-  const FieldView f = field(name);
-  std::vector<double> result(static_cast<std::size_t>(f.components) * points_.size);
-  for (int k = 0; k < points_.size; ++k)
-    for (int c = 0; c < f.components; ++c)
-      result[static_cast<std::size_t>(f.components) * points_.number[k] + c] =
-          f.data[k * f.point_stride + c * f.component_stride];
-  return result;
-}
-
-void Solver::set_values(const std::string& name, std::span<const double> values) {
-  const bool settable = name == "position" || name == "velocity" || name == "stress" ||
-                        name == "volume" || name == "plastic_strain";
-  require(settable, "field", name, "one of position, velocity, stress, volume, plastic_strain");
-  const FieldView f = field(name);
-  check_values(values, static_cast<std::size_t>(f.components) * points_.size, name == "volume",
-               name.c_str());
-  for (int k = 0; k < points_.size; ++k)
-    for (int c = 0; c < f.components; ++c)
-      f.data[k * f.point_stride + c * f.component_stride] =
-          values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
-  nodes_ready_ = speeds_known_ = false;
-  if (name == "position") sorted_ = false;
-}
-
-std::vector<std::int32_t> Solver::material_of_points() const {
-  std::vector<std::int32_t> result(points_.size);
-  for (int k = 0; k < points_.size; ++k) result[points_.number[k]] = points_.material[k];
-  return result;
+  const double limit = viscosity ? method_.blend.value / alpha : dt;
+  refuse(viscosity ? "viscosity" : "relaxation_time", method_.blend.value,
+         (viscosity ? "at most " : "at least ") + text(limit) + (viscosity ? " m2/s" : " s") +
+             " at a step of " + text(dt) + " s, where the PIC share of a step reaches 1");
 }
 
 std::int64_t Solver::bytes() const {

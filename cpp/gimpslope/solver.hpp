@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "checks.hpp"
 #include "grid.hpp"
 #include "kernel.hpp"
 #include "layout.hpp"
@@ -19,13 +20,6 @@
 #include "wall.hpp"
 
 namespace gimpslope {
-
-/// The points as they are given: vectors {x, y} one after the other, in SI units.
-struct InitialPoints {
-  std::span<const double> position, velocity, half_length;
-  std::span<const double> mass, volume;
-  std::span<const std::int32_t> material;
-};
 
 /// Energies in J per metre of thickness; the potential is zero at the origin of the coordinates.
 struct Energies {
@@ -92,12 +86,15 @@ class Solver {
   View view();
   void prepare();
   void step(double dt);
-  [[noreturn]] void fail(int lost, double dt);
+  [[noreturn]] void fail(const std::string& what, std::int64_t point);
+  [[noreturn]] void fail_at(int lost, double dt);
   void follow_width(double width);
   void damp_at_peak();
   void check_step(const TimeStep& step, const std::vector<Material>& materials) const;
   double stable_time_step_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
+  void check_alpha(double dt) const;
+  double kinetic_energy() const;
   void gather_speeds();
   int fastest_point() const;
 
@@ -119,6 +116,9 @@ class Solver {
   double half_length_ = 0.0;  // of all points where they are alike, otherwise their mean, m
   double width_ = 0.0;        // of the widest domain, cells
   double time_ = 0.0;
+  double time_carry_ = 0.0;      // what the sum of the steps has lost by rounding, s
+  double stable_at_sort_ = 0.0;  // stable step when the points were last sorted, s
+  std::string failure_;          // why no step can follow
   std::int64_t steps_ = 0;
   double last_kinetic_ = 0.0;
   double travel_ = 0.0;  // since the last sort, at most, cells

@@ -1,5 +1,10 @@
 #include "team.hpp"
 
+#include <string>
+#include <system_error>
+
+#include "error.hpp"
+
 namespace gimpslope {
 namespace {
 
@@ -23,14 +28,25 @@ void advance(std::atomic<std::uint32_t>& counter) {
 }  // namespace
 
 Team::Team(int size) : size_(size), spins_(spins_of(size)) {
-  for (int k = 1; k < size; ++k) threads_.emplace_back([this] { work(); });
+  try {
+    for (int k = 1; k < size; ++k) threads_.emplace_back([this] { work(); });
+  } catch (const std::system_error&) {
+    const std::size_t started = threads_.size() + 1;
+    leave();
+    refuse("threads", size,
+           "a number that the system lets start; it gave " + std::to_string(started));
+  }
 }
 
-Team::~Team() {
+Team::~Team() { leave(); }
+
+void Team::leave() {
   leaving_ = true;
   advance(jobs_);
   for (std::thread& thread : threads_) thread.join();
 }
+
+int Team::claim() { return next_.fetch_add(1, std::memory_order_relaxed); }
 
 void Team::run(void (*job)(void*), void* context) {
   job_ = job;

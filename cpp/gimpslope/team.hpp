@@ -18,19 +18,18 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  int size() const { return size_; }
-
   /// Calls job(context) on every thread; returns when all are done. The job must not throw.
   void run(void (*job)(void*), void* context);
 
   /// For jobs: the next index of the loop that the team is in, each given once.
-  int claim() { return next_.fetch_add(1, std::memory_order_relaxed); }
+  int claim();
 
   /// For jobs: waits for all threads, which ends the loop and begins the next one at index 0.
   void barrier();
 
  private:
   void work();
+  void leave();
 
   int size_;
   int spins_;

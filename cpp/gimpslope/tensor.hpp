@@ -5,6 +5,10 @@
 
 #include "instruction_set.hpp"
 
+#if !EIGEN_VERSION_AT_LEAST(3, 4, 0)
+#error "gimpslope needs Eigen 3.4 or newer"
+#endif
+
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 

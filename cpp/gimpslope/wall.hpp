@@ -1,7 +1,6 @@
 // The condition at one side of the domain, applied to every node on or beyond it.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 
 #include "instruction_set.hpp"
@@ -35,8 +34,8 @@ inline void constrain(WallKind kind, double outward, double& normal, double& tan
 /// and, as friction impulse, at most mu times as much from the tangential one.
 inline void react(WallKind kind, double mu, double outward, double& normal, double& tangential) {
   if (kind == WallKind::coulomb && outward * normal > 0.0) {
-    const double speed = std::abs(tangential);
-    tangential *= speed > 0.0 ? std::max(0.0, 1.0 - mu * std::abs(normal) / speed) : 0.0;
+    const double speed = std::fabs(tangential), stopped = mu * std::fabs(normal);
+    tangential *= speed > stopped ? 1.0 - stopped / speed : 0.0;
   }
   constrain(kind, outward, normal, tangential);
 }

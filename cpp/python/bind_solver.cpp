@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 
 #include "bind.hpp"
 #include "gimpslope/solver.hpp"
@@ -54,13 +55,26 @@ Blend blend(const Choice& given) {
           given.second};
 }
 
-Solver make(const Doubles& position, const Doubles& velocity, const Doubles& half_length,
-            const Doubles& mass, const Doubles& volume, const py::array& material,
-            std::vector<Material> materials, double cell, std::array<double, 2> origin,
-            const std::array<WallTuple, 4>& walls, const std::string& shape,
-            const std::string& domain_update, const std::string& volume_update,
-            const std::string& scheme, const Choice& blended, const Choice& step, int threads,
-            bool allow_unstable, const std::string& instruction_set) {
+/// A solver that one thread at a time may use: stepping goes on without the interpreter's lock.
+struct Guarded {
+  Solver solver;
+  bool stepping = false;
+
+  Solver& get() {
+    if (stepping) throw std::runtime_error("the solver is stepping in another thread");
+    return solver;
+  }
+};
+
+std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
+                              const Doubles& half_length, const Doubles& mass,
+                              const Doubles& volume, const py::array& material,
+                              std::vector<Material> materials, double cell,
+                              std::array<double, 2> origin, const std::array<WallTuple, 4>& walls,
+                              const std::string& shape, const std::string& domain_update,
+                              const std::string& volume_update, const std::string& scheme,
+                              const Choice& blended, const Choice& step, int threads,
+                              bool allow_unstable, const std::string& instruction_set) {
   Method method;
   method.shape = parse<ShapeKind>(
       "shape", shape,
@@ -86,25 +100,32 @@ Solver make(const Doubles& position, const Doubles& velocity, const Doubles& hal
       values_of(volume, "volume", n, 1),           {}};
   const std::vector<std::int32_t> indices = indices_of(material, n);
   points.material = indices;
-  return Solver(points, std::move(materials), cell, origin,
-                {wall(walls[0]), wall(walls[1]), wall(walls[2]), wall(walls[3])}, method,
-                instruction_set.empty() ? available_instruction_sets().back()
-                                        : parse_instruction_set(instruction_set));
+  return std::unique_ptr<Guarded>(
+      new Guarded{Solver(points, std::move(materials), cell, origin,
+                         {wall(walls[0]), wall(walls[1]), wall(walls[2]), wall(walls[3])}, method,
+                         instruction_set.empty() ? available_instruction_sets().back()
+                                                 : parse_instruction_set(instruction_set))});
 }
 
-/// Runs chunk(steps) -> finished without the interpreter's lock, in pieces of about a twentieth of
-/// a second, and looks for Ctrl-C in between.
+/// Runs chunk(solver, steps) -> finished without the interpreter's lock, in pieces of about a
+/// twentieth of a second, and looks for Ctrl-C in between.
 template <class Chunk>
-void interruptible(std::int64_t steps, Chunk chunk) {
+void interruptible(Guarded& guarded, std::int64_t steps, Chunk chunk) {
   using Clock = std::chrono::steady_clock;
   constexpr double pause = 0.05;
+  Solver& solver = guarded.get();
+  struct Mark {
+    bool& flag;
+    explicit Mark(bool& f) : flag(f) { flag = true; }
+    ~Mark() { flag = false; }
+  } mark(guarded.stepping);
   for (std::int64_t piece = 1; steps > 0;) {
     const std::int64_t now = std::min(piece, steps);
     const auto start = Clock::now();
     bool finished;
     {
       py::gil_scoped_release release;
-      finished = chunk(now);
+      finished = chunk(solver, now);
     }
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
     if (finished) return;
@@ -117,7 +138,7 @@ void interruptible(std::int64_t steps, Chunk chunk) {
 
 /// A window onto a field in storage order; it keeps the solver alive.
 py::array window(py::object owner, const std::string& name) {
-  auto& solver = owner.cast<Solver&>();
+  auto& solver = owner.cast<Guarded&>().get();
   const FieldView f = solver.field(name);
   constexpr auto size = static_cast<py::ssize_t>(sizeof(double));
   std::vector<py::ssize_t> shape{solver.size()}, strides{f.point_stride * size};
@@ -130,7 +151,8 @@ py::array window(py::object owner, const std::string& name) {
   return array;
 }
 
-py::array_t<double> values(Solver& solver, const std::string& name) {
+py::array_t<double> values(Guarded& guarded, const std::string& name) {
+  Solver& solver = guarded.get();
   const std::vector<double> found = solver.values(name);
   std::vector<py::ssize_t> shape{solver.size()};
   if (const int components = solver.field(name).components; components > 1)
@@ -154,20 +176,26 @@ void bind_solver(py::module_& m) {
     }
   });
 
-  py::class_<Solver>(m, "Solver", "State of a scene and its stepping.")
+  const auto read = [](auto member) {
+    return [member](Guarded& s) {
+      return (s.get().*member)();
+    };
+  };
+  py::class_<Guarded>(m, "Solver", "State of a scene and its stepping.")
       .def(py::init(&make), py::arg("position"), py::arg("velocity"), py::arg("half_length"),
            py::arg("mass"), py::arg("volume"), py::arg("material"), py::arg("materials"),
            py::kw_only(), py::arg("cell"), py::arg("origin"), py::arg("walls"),
            py::arg("shape") = "ugimp", py::arg("domain_update") = "none",
            py::arg("volume_update") = "linear", py::arg("scheme") = "usf",
-           py::arg("blend") = Choice{"alpha", 0.0}, py::arg("time_step") = Choice{"courant", 0.4},
-           py::arg("threads") = 1, py::arg("allow_unstable") = false,
+           py::arg("blend") = Choice{"alpha", Blend{}.value},
+           py::arg("time_step") = Choice{"courant", TimeStep{}.value},
+           py::arg("threads") = Method{}.threads, py::arg("allow_unstable") = false,
            py::arg("instruction_set") = "")
       .def(
           "advance",
-          [](Solver& solver, std::int64_t steps) {
+          [](Guarded& s, std::int64_t steps) {
             require(steps >= 0, "steps", steps, "zero or positive");
-            interruptible(steps, [&](std::int64_t now) {
+            interruptible(s, steps, [](Solver& solver, std::int64_t now) {
               solver.advance(now);
               return false;
             });
@@ -175,31 +203,35 @@ void bind_solver(py::module_& m) {
           py::arg("steps") = 1)
       .def(
           "advance_to",
-          [](Solver& solver, double time) {
-            interruptible(INT64_MAX,
-                          [&](std::int64_t now) { return solver.advance_to(time, now); });
+          [](Guarded& s, double time) {
+            interruptible(s, INT64_MAX, [time](Solver& solver, std::int64_t now) {
+              return solver.advance_to(time, now);
+            });
           },
           py::arg("time"))
       .def(
           "set_gravity",
-          [](Solver& s, double x, double y, double ramp) { s.set_gravity({x, y, ramp}); },
+          [](Guarded& s, double x, double y, double ramp) { s.get().set_gravity({x, y, ramp}); },
           py::arg("x"), py::arg("y"), py::arg("ramp") = 0.0)
       .def(
           "set_damping",
-          [](Solver& s, double local, bool kinetic) { s.set_damping({local, kinetic}); },
+          [](Guarded& s, double local, bool kinetic) { s.get().set_damping({local, kinetic}); },
           py::arg("local") = 0.0, py::arg("kinetic") = false)
       .def(
           "set_time_step",
-          [](Solver& s, const std::string& kind, double value) {
-            s.set_time_step(time_step({kind, value}));
+          [](Guarded& s, const std::string& kind, double value) {
+            s.get().set_time_step(time_step({kind, value}));
           },
           py::arg("kind"), py::arg("value"))
-      .def("set_materials", &Solver::set_materials, py::arg("materials"))
-      .def("release_stress", &Solver::release_stress)
-      .def("reset_clock", &Solver::reset_clock)
+      .def(
+          "set_materials",
+          [](Guarded& s, std::vector<Material> given) { s.get().set_materials(std::move(given)); },
+          py::arg("materials"))
+      .def("release_stress", read(&Solver::release_stress))
+      .def("reset_clock", read(&Solver::reset_clock))
       .def("energies",
-           [](const Solver& s) {
-             const Energies e = s.energies();
+           [](Guarded& s) {
+             const Energies e = s.get().energies();
              py::dict result;
              result["kinetic"] = e.kinetic;
              result["potential"] = e.potential;
@@ -210,33 +242,34 @@ void bind_solver(py::module_& m) {
       .def("get", &values, py::arg("name"))
       .def(
           "set",
-          [](Solver& s, const std::string& name, const Doubles& given) {
-            s.set_values(name, values_of(given, name.c_str(), s.size(), s.field(name).components));
+          [](Guarded& s, const std::string& name, const Doubles& given) {
+            Solver& solver = s.get();
+            solver.set_values(
+                name, values_of(given, name.c_str(), solver.size(), solver.field(name).components));
           },
           py::arg("name"), py::arg("values"))
       .def("view", &window, py::arg("name"))
       .def("material",
-           [](const Solver& s) {
-             const auto found = s.material_of_points();
+           [](Guarded& s) {
+             const auto found = s.get().material_of_points();
              return py::array_t<std::int32_t>(static_cast<py::ssize_t>(found.size()), found.data());
            })
       .def("numbers",
            [](py::object owner) {
-             const auto numbers = owner.cast<Solver&>().numbers();
+             const auto numbers = owner.cast<Guarded&>().get().numbers();
              py::array_t<std::int32_t> array(static_cast<py::ssize_t>(numbers.size()),
                                              numbers.data(), owner);
              array.attr("setflags")(py::arg("write") = false);
              return array;
            })
-      .def_property_readonly("time", &Solver::time)
-      .def_property_readonly("steps", &Solver::steps)
-      .def_property_readonly("size", &Solver::size)
-      .def_property_readonly("cell", &Solver::cell)
-      .def_property_readonly("threads", &Solver::threads)
+      .def_property_readonly("time", read(&Solver::time))
+      .def_property_readonly("steps", read(&Solver::steps))
+      .def_property_readonly("size", read(&Solver::size))
+      .def_property_readonly("threads", read(&Solver::threads))
       .def_property_readonly("instruction_set",
-                             [](const Solver& s) { return name(s.instruction_set()); })
-      .def_property_readonly("time_step", &Solver::time_step)
-      .def_property_readonly("stable_time_step", &Solver::stable_time_step)
-      .def_property_readonly("alpha", &Solver::alpha)
-      .def_property_readonly("bytes", &Solver::bytes);
+                             [](Guarded& s) { return name(s.get().instruction_set()); })
+      .def_property_readonly("time_step", read(&Solver::time_step))
+      .def_property_readonly("stable_time_step", read(&Solver::stable_time_step))
+      .def_property_readonly("alpha", read(&Solver::alpha))
+      .def_property_readonly("bytes", read(&Solver::bytes));
 }

@@ -20,7 +20,7 @@ from .method import Method
 from .outline import Outline
 from .run import Run, open
 from .scene import Points, Scene
-from .simulation import NotSettledError, Simulation, simulate
+from .simulation import NotSettledError, simulate
 from .solver import Diverged, Energies, Solver
 from .stages import Gravity, Settling, Slide, Stages
 from .walls import Coulomb, Fixed, Free, Roller, Walls
@@ -45,7 +45,6 @@ __all__ = [
     "Run",
     "Scene",
     "Settling",
-    "Simulation",
     "Slide",
     "Solver",
     "Stages",

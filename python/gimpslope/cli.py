@@ -13,6 +13,7 @@ from pathlib import Path
 import gimpslope as gs
 
 from . import figures
+from .simulation import Recorder, Simulation
 from .studies import benchmark, reference
 
 
@@ -20,47 +21,57 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code is 0, 2 for refused arguments, 1 for a failed run and 130
     for one that was interrupted."""
     options = _parser().parse_args(arguments)
-    command: Callable[[argparse.Namespace], None] = options.command
+    prepare: Callable[[argparse.Namespace], Callable[[], None]] = options.prepare
     try:
-        command(options)
+        command = prepare(options)
     except (ValueError, TypeError, FileExistsError) as refused:
         print(f"gimpslope: {refused}", file=sys.stderr)
         return 2
+    try:
+        command()
     except (gs.Diverged, gs.NotSettledError, OSError) as failed:
         print(f"gimpslope: {failed}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("gimpslope: interrupted; what was computed is in the run file", file=sys.stderr)
+        print("gimpslope: interrupted", file=sys.stderr)
         return 130
     return 0
 
 
-def _run(options: argparse.Namespace) -> None:
+def _run(options: argparse.Namespace) -> Callable[[], None]:
     _check_file("--output", options.output)
     _check_file("--summary", options.summary)
     figure_directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
     if Path(figure_directory).is_file():
         raise ValueError(f"--figures must be a directory, got the file {figure_directory!r}")
-    run = gs.simulate(
+    simulation = Simulation(
         reference.soil_slope(options.reading, options.cell),
-        options.duration,
-        method=reference.method(
+        reference.method(
             options.reading,
             courant=options.courant,
             time_step=options.time_step,
             threads=options.threads,
         ),
-        output=options.output,
+        duration=options.duration,
+    )
+    recorder = Recorder(
+        simulation,
+        options.output,
         overwrite=options.overwrite,
         snapshot_times=reference.SNAPSHOT_TIMES,
         progress=not options.quiet,
     )
-    summary = run.summary
-    print(_comparison(summary, options.reading))
-    if options.summary is not None:
-        Path(options.summary).write_text(json.dumps(summary, indent=2) + "\n")
-    figures.write_figures(run, figure_directory, reference.PAPER)
-    print(f"run: {options.output}   figures: {figure_directory}{os.sep}")
+
+    def command() -> None:
+        run = simulation.run(recorder)
+        summary = run.summary
+        print(_comparison(summary, options.reading))
+        if options.summary is not None:
+            Path(options.summary).write_text(json.dumps(summary, indent=2) + "\n")
+        figures.write_figures(run, figure_directory, reference.PAPER)
+        print(f"run: {options.output}   figures: {figure_directory}{os.sep}")
+
+    return command
 
 
 def _check_file(option: str, path: str | None) -> None:
@@ -80,7 +91,7 @@ def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
         ("  horizontal", "max_displacement_horizontal", "m", "{:g}"),
         ("  vertical", "max_displacement_vertical", "m", "{:g}"),
         ("toe", "toe", "m", ""),
-        ("final kinetic energy", "final_kinetic_energy", "kJ/m", ""),
+        ("final kinetic energy", "final_kinetic_energy", "J/m", ""),
     ]
     lines = [f"{'slope A, reading ' + reading:32}{'paper':>8}{'here':>10}"]
     for title, name, unit, form in rows:
@@ -99,23 +110,31 @@ def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
     return "\n".join(lines)
 
 
-def _bench(options: argparse.Namespace) -> None:
+def _bench(options: argparse.Namespace) -> Callable[[], None]:
     _check_file("--json", options.json)
-    measurements = [
-        benchmark.measure(points, threads)
-        for points in options.points
-        for threads in options.threads
+    cases = [
+        benchmark.Case(points, threads) for points in options.points for threads in options.threads
     ]
-    print(benchmark.table(measurements))
-    if options.json is not None:
-        rows = [measurement.to_dict() for measurement in measurements]
-        Path(options.json).write_text(json.dumps(rows, indent=2) + "\n")
+
+    def command() -> None:
+        measurements = [case.measure() for case in cases]
+        print(benchmark.table(measurements))
+        if options.json is not None:
+            rows = [measurement.to_dict() for measurement in measurements]
+            Path(options.json).write_text(json.dumps(rows, indent=2) + "\n")
+
+    return command
 
 
-def _info(_: argparse.Namespace) -> None:
-    print(f"gimpslope {gs.__version__}, Python {platform.python_version()}, {platform.machine()}")
-    print(f"instruction sets: {', '.join(gs.kernel.instruction_sets())} (the last is used)")
-    print(f"processors: {os.cpu_count()}")
+def _info(_: argparse.Namespace) -> Callable[[], None]:
+    def command() -> None:
+        print(
+            f"gimpslope {gs.__version__}, Python {platform.python_version()}, {platform.machine()}"
+        )
+        print(f"instruction sets: {', '.join(gs.kernel.instruction_sets())} (the last is used)")
+        print(f"processors: {os.cpu_count()}")
+
+    return command
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -124,7 +143,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
 
     run = commands.add_parser("run", help="simulate a slope of the reference study")
-    run.set_defaults(command=_run)
+    run.set_defaults(prepare=_run)
     run.add_argument("slope", choices=["soil"], help="soil: slope A, homogeneous")
     run.add_argument(
         "--reading",
@@ -149,7 +168,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--quiet", action="store_true", help="no progress bar")
 
     bench = commands.add_parser("bench", help="measure the speed of the kernel on slope A")
-    bench.set_defaults(command=_bench)
+    bench.set_defaults(prepare=_bench)
     bench.add_argument(
         "--points", type=int, nargs="+", default=[23_490], metavar="N", help="(default: 23490)"
     )
@@ -159,7 +178,7 @@ def _parser() -> argparse.ArgumentParser:
     bench.add_argument("--json", metavar="FILE", help="write the measurements as JSON")
 
     info = commands.add_parser("info", help="show version and instruction sets")
-    info.set_defaults(command=_info)
+    info.set_defaults(prepare=_info)
     return parser
 
 

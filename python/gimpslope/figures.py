@@ -175,15 +175,16 @@ def displacement_bars(
     """
     ax = ax or _new_axes()
     names = ("total", "horizontal", "vertical")
-    bars: dict[str, Sequence[float]] = {
-        name: tuple(run.max_displacement()) for name, run in runs.items()
-    }
+    bars: list[tuple[str, str, Sequence[float]]] = [
+        (name, f"C{number}", tuple(run.max_displacement()))
+        for number, (name, run) in enumerate(runs.items())
+    ]
     if reference:
-        bars["paper"] = [reference.get(f"max_displacement_{name}", np.nan) for name in names]
+        paper = [reference.get(f"max_displacement_{name}", np.nan) for name in names]
+        bars.append(("the paper", _PAPER, paper))
     width = 0.8 / len(bars)
-    for number, (name, heights) in enumerate(bars.items()):
+    for number, (name, colour, heights) in enumerate(bars):
         places = np.arange(len(names)) + (number - (len(bars) - 1) / 2) * width
-        colour = _PAPER if reference and name == "paper" else f"C{number}"
         drawn = ax.bar(places, heights, 0.92 * width, color=colour, label=name)
         ax.bar_label(drawn, fmt="%.2f", padding=2, fontsize="small")
     ax.set_xticks(range(len(names)), names)
@@ -281,7 +282,7 @@ def _stacked(run: Run, count: int, states: Sequence[Snapshot]) -> tuple[Figure, 
     """A figure of maps one below the other, as high as their common frame makes it."""
     corners = np.concatenate([run.scene.outline.vertices, *(state.position for state in states)])
     width, height = np.ptp(corners, axis=0)
-    panel = 0.8 * _WIDTH * height / width + 0.45
+    panel = min(0.8 * _WIDTH * height / width, _WIDTH) + 0.45
     figure = Figure(figsize=(_WIDTH, count * panel + 0.4), layout="constrained")
     axes = figure.subplots(count, sharex=True, sharey=True, squeeze=False)[:, 0].tolist()
     return figure, axes

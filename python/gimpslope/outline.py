@@ -15,6 +15,7 @@ from ._check import FloatArray
 from ._record import Record
 
 _EDGE = 1e-9
+_MOST_POINTS = 200_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +103,16 @@ class Outline(Record):
         """The points of a regular lattice inside the outline, edge inclusive, shape (n, 2), m.
 
         They lie at ((i + 1/2) s + x_min, (j + 1/2) s + y_min), row by row from the bottom, each
-        row from the left. `spacing` s in m, > 0.
+        row from the left. `spacing` s in m, > 0, for at most 2e8 points in the bounding box.
         """
         spacing = _check.positive("spacing", spacing)
         x_min, y_min, x_max, y_max = self.bounds
         columns, rows = (math.ceil(side / spacing) for side in (x_max - x_min, y_max - y_min))
+        if columns * rows > _MOST_POINTS:
+            raise ValueError(
+                f"spacing must be large enough for at most {_MOST_POINTS:,} points in the bounding "
+                f"box, got {spacing:.6g} m, which gives {columns * rows:,}"
+            )
         x = x_min + (np.arange(columns) + 0.5) * spacing
         y = y_min + (np.arange(rows) + 0.5) * spacing
         points = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)

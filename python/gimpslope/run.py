@@ -20,6 +20,7 @@ from .scene import Scene
 from .stages import Stages
 
 if TYPE_CHECKING:
+    import meshio
     from matplotlib.axes import Axes
 
 PLASTIC_THRESHOLD = 0.01
@@ -187,6 +188,31 @@ class Snapshot:
         """Mass over present volume, kg/m3, shape (n,)."""
         density: FloatArray = self.points.mass / self.volume
         return density
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The points as vertices with their fields, for any format that meshio writes.
+
+        `run.snapshot(1.6).to_meshio().write("slope.vtu")` makes a file for ParaView. Vectors get a
+        third component of zero; stress is xx, yy, zz, xy.
+        """
+        import meshio
+
+        n = len(self.position)
+        deep = {
+            name: np.column_stack([getattr(self, name), np.zeros(n)])
+            for name in ("position", "velocity", "displacement")
+        }
+        return meshio.Mesh(
+            deep.pop("position"),
+            [("vertex", np.arange(n)[:, np.newaxis])],
+            point_data={
+                **deep,
+                "stress": self.stress,
+                "plastic_strain": self.plastic_strain,
+                "density": self.density,
+                "material": self.points.material,
+            },
+        )
 
 
 class Run:
@@ -377,7 +403,7 @@ def summarise(run: Run) -> dict[str, float | int | None]:
     reached, or not recorded, is None.
     """
     return {
-        "points": run.scene.n_points,
+        "points": len(hdf5.read_points(run.path).get("mass", ())),
         "steps": _steps(hdf5.read_energy(run.path)["step"]),
         "stones": len(run.scene.stones),
         **_energy_summary(run.energy),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, fields
+from dataclasses import KW_ONLY, dataclass
 from functools import cached_property
 
 import numpy as np
@@ -32,18 +32,34 @@ class Points:
     half_length : half the sides of the point's square, m, shape (n, 2)
     volume : area in the plane, m2 (m3 a metre of width), shape (n,)
     mass : kg/m, shape (n,)
-    material : index into the scene's materials, shape (n,), uint16
+    material : index into the scene's materials, shape (n,), whole numbers
+
+    Raises
+    ------
+    TypeError, ValueError
+        If an array is of the wrong type or shape, or holds a number that is not finite.
     """
 
     position: FloatArray
     half_length: FloatArray
     volume: FloatArray
     mass: FloatArray
-    material: npt.NDArray[np.uint16]
+    material: npt.NDArray[np.int32]
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            getattr(self, field.name).setflags(write=False)
+        n = len(_check.array("position", self.position, ("n", 2)))
+        shapes = {"position": (n, 2), "half_length": (n, 2), "volume": (n,), "mass": (n,)}
+        for name, shape in shapes.items():
+            object.__setattr__(self, name, _check.array(name, getattr(self, name), shape))
+        material = np.array(self.material)
+        if material.shape != (n,) or material.dtype.kind not in "iu":
+            raise TypeError(
+                f"material must be an array of whole numbers of shape ({n},), "
+                f"got {material.dtype} of shape {material.shape}"
+            )
+        material = material.astype(np.int32)
+        material.setflags(write=False)
+        object.__setattr__(self, "material", material)
 
     def __len__(self) -> int:
         return len(self.position)
@@ -137,7 +153,7 @@ class Scene(Record):
     def points(self) -> Points:
         """The material points at the start, row by row from the bottom, each row from the left."""
         position = self.outline.lattice(self.spacing)
-        material = np.zeros(len(position), dtype=np.uint16)
+        material = np.zeros(len(position), dtype=np.int32)
         for number, stone in enumerate(self.stones):
             inside = stone.contains(position)
             if not inside.any():

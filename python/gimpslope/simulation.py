@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time as clock
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib.metadata import version
@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from tqdm import tqdm
 
 from . import _check
@@ -22,10 +23,14 @@ from .io.hdf5 import FIELDS, STAGES, RunWriter
 from .method import Method
 from .run import Run, summarise
 from .scene import Scene
-from .solver import Solver
+from .solver import Diverged, Solver
 from .stages import Stages
 
+ENERGY_INTERVAL = 0.005  # s
+SNAPSHOT_INTERVAL = 0.2  # s
 _FLUSH_INTERVAL = 1.0  # s of wall time
+_BAR = "{desc} {percentage:3.0f}%|{bar}| {n:.2f} of {total:.2f} s [{elapsed}<{remaining}{postfix}]"
+_OPEN_BAR = "{desc} {n:.2f} s, at most {total:.0f} s [{elapsed}{postfix}]"
 
 
 class NotSettledError(RuntimeError):
@@ -40,9 +45,9 @@ def simulate(
     stages: Stages | None = None,
     output: str | PathLike[str] = "run.h5",
     overwrite: bool = False,
-    energy_interval: float = 0.005,
-    snapshot_interval: float = 0.2,
-    snapshot_times: Sequence[float] = (),
+    energy_interval: float = ENERGY_INTERVAL,
+    snapshot_interval: float = SNAPSHOT_INTERVAL,
+    snapshot_times: npt.ArrayLike = (),
     progress: bool = True,
 ) -> Run:
     """Simulate a slope from its unloaded state until the slide ends, and write the run file.
@@ -69,12 +74,10 @@ def simulate(
     Diverged
         If the motion is no longer finite or outruns the grid.
 
-    After any error, Ctrl-C included, the file holds all that was computed and says how it ended.
+    After any error, Ctrl-C included, the file holds what was computed and says how it ended. A run
+    that diverged ends with its last row and snapshot, for the state after them is torn.
     """
-    stages = _check.instance("stages", stages or Stages(), Stages, "Stages")
-    if duration is not None:
-        stages = replace(stages, slide=replace(stages.slide, duration=duration))
-    simulation = Simulation(scene, method, stages)
+    simulation = Simulation(scene, method, stages, duration)
     recorder = Recorder(
         simulation,
         output,
@@ -84,28 +87,36 @@ def simulate(
         snapshot_times=snapshot_times,
         progress=progress,
     )
-    with recorder:
-        simulation.load(recorder)
-        simulation.settle(recorder)
-        simulation.release(recorder)
-        simulation.slide(recorder)
-    return Run(output)
+    return simulation.run(recorder)
 
 
 class Simulation:
-    """The stages of one slope, each a method, in the order load, settle, release, slide.
-
-    `solver` is the state; it may be looked at, and changed, between the stages. `simulate` runs
-    them all.
-    """
+    """The stages of one slope: load, settle, release, slide. `solver` is the state."""
 
     def __init__(
-        self, scene: Scene, method: Method | None = None, stages: Stages | None = None
+        self,
+        scene: Scene,
+        method: Method | None = None,
+        stages: Stages | None = None,
+        duration: float | None = None,
     ) -> None:
         self.scene = _check.instance("scene", scene, Scene, "a Scene")
-        self.method = _check.instance("method", method or Method(), Method, "a Method")
-        self.stages = _check.instance("stages", stages or Stages(), Stages, "Stages")
+        method = Method() if method is None else method
+        stages = Stages() if stages is None else stages
+        self.method = _check.instance("method", method, Method, "a Method")
+        self.stages = _check.instance("stages", stages, Stages, "Stages")
+        if duration is not None:
+            self.stages = replace(stages, slide=replace(stages.slide, duration=duration))
         self.solver = Solver.of(scene, self.method, elastic=True)
+
+    def run(self, recorder: Recorder) -> Run:
+        """All stages, one after the other, recorded."""
+        with recorder:
+            self.load(recorder)
+            self.settle(recorder)
+            self.release(recorder)
+            self.slide(recorder)
+        return Run(recorder.path)
 
     def load(self, recorder: Recorder) -> None:
         """Gravity grows linearly; all materials are elastic."""
@@ -121,11 +132,12 @@ class Simulation:
 
         At rest means that the kinetic energy has stayed below its share of the potential energy for
         as long as a pressure wave needs to cross the scene twice: at a single moment it may be zero
-        in full swing. The potential energy counts from the bottom of the outline.
+        in full swing. The potential energy is that of the start, above the bottom of the outline.
         """
         settling = self.stages.settling
         start = self.solver.time
         window = self._crossing_time()
+        potential = self._first_potential()
         recorder.start("settling", settling.limit)
         calm_since, ratio = start, math.inf
         while self.solver.time - calm_since < window:
@@ -136,7 +148,7 @@ class Simulation:
                     f"{settling.ratio} for {window:.3g} s, in which a wave crosses the scene twice"
                 )
             row = recorder.advance(recorder.next_time())
-            ratio = row["kinetic"] / (row["potential"] - self._lowest_potential())
+            ratio = row["kinetic"] / potential
             if ratio > settling.ratio:
                 calm_since = self.solver.time
         self.settling_time, self.settling_ratio = self.solver.time - start, ratio
@@ -170,9 +182,10 @@ class Simulation:
         slowest = min(material.wave_speed for material in self.scene.materials)
         return 2 * math.hypot(right - left, top - bottom) / slowest
 
-    def _lowest_potential(self) -> float:
-        mass = float(self.scene.points.mass.sum())
-        return mass * self.scene.gravity * self.scene.outline.bounds[1]
+    def _first_potential(self) -> float:
+        points = self.scene.points
+        heights = points.position[:, 1] - self.scene.outline.bounds[1]
+        return float(self.scene.gravity * points.mass @ heights)
 
 
 class Recorder:
@@ -183,13 +196,14 @@ class Recorder:
         simulation: Simulation,
         output: str | PathLike[str],
         *,
-        overwrite: bool,
-        energy_interval: float,
-        snapshot_interval: float,
-        snapshot_times: Sequence[float],
-        progress: bool,
+        overwrite: bool = False,
+        energy_interval: float = ENERGY_INTERVAL,
+        snapshot_interval: float = SNAPSHOT_INTERVAL,
+        snapshot_times: npt.ArrayLike = (),
+        progress: bool = True,
     ) -> None:
         self._interval = _check.positive("energy_interval", energy_interval)
+        self.path = Path(_check.instance("output", output, str | PathLike, "a path"))
         self.detail = ""
         self._simulation = simulation
         self._solver = simulation.solver
@@ -197,7 +211,7 @@ class Recorder:
         self._snapshot_times = _times(
             simulation.stages.slide.duration,
             _check.positive("snapshot_interval", snapshot_interval),
-            _check.array("snapshot_times", snapshot_times or (0.0,), ("k",)),
+            _check.array("snapshot_times", snapshot_times, ("k",)),
         )
         self._stage = 0
         self._bar: tqdm[Any] | None = None
@@ -209,7 +223,7 @@ class Recorder:
         self._steps = 0
         self._flushed = clock.monotonic()
         self._writer = RunWriter(
-            Path(output),
+            self.path,
             scene_json=json.dumps(simulation.scene.to_dict()),
             method_json=json.dumps(simulation.method.to_dict()),
             stages_json=json.dumps(simulation.stages.to_dict()),
@@ -231,9 +245,10 @@ class Recorder:
         if kind is None:
             self._finish("finished", self.detail)
         elif issubclass(kind, KeyboardInterrupt):
-            self._finish("interrupted", f"stopped by the user at {self._solver.time:.6g} s")
+            where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
+            self._finish("interrupted", f"stopped by the user {where}")
         else:
-            self._finish("failed", f"{kind.__name__}: {error}")
+            self._finish("failed", f"{kind.__name__}: {error}", sound=kind is not Diverged)
 
     def start(self, stage: str, duration: float) -> None:
         """Begin the rows and the bar of a stage that lasts at most `duration` seconds."""
@@ -244,8 +259,7 @@ class Recorder:
             total=duration,
             desc=f"{stage:8}",
             disable=not self._progress,
-            bar_format="{desc} {percentage:3.0f}%|{bar}| {n:.2f} of {total:.2f} s "
-            "[{elapsed}<{remaining}{postfix}]",
+            bar_format=_OPEN_BAR if stage == "settling" else _BAR,
         )
         self._stage_start = self._solver.time
         self._intervals = 0
@@ -317,11 +331,12 @@ class Recorder:
     def _write_points(self) -> None:
         solver, scene = self._solver, self._simulation.scene
         names = ["soil", "stone"][: len(scene.materials)]
+        linear = self._simulation.method.shape == "linear"
         self._writer.write_points(
             solver.position,
             solver.mass,
             solver.volume,
-            scene.points.half_length,
+            scene.points.half_length if linear else solver.half_length,
             solver.material,
             names,
         )
@@ -338,11 +353,12 @@ class Recorder:
         self._writer.flush()
         self._flushed = clock.monotonic()
 
-    def _finish(self, status: str, detail: str) -> None:
-        if self._rows_end != self._solver.steps:
+    def _finish(self, status: str, detail: str, sound: bool = True) -> None:
+        """Write the end; of a state that is not sound, torn in the middle of a step, nothing."""
+        if sound and self._rows_end != self._solver.steps:
             self._row()
         self._hand_over_rows()
-        if STAGES[self._stage] == "slide":
+        if sound and STAGES[self._stage] == "slide":
             self._writer.write_final(self._solver.time, self._fields())
         self._writer.write_timing(self._seconds, self._steps * len(self._solver))
         self._writer.finish(status, detail, summarise(Run(self._writer.path)))
@@ -364,7 +380,7 @@ class Recorder:
 
 def _times(duration: float, interval: float, further: FloatArray) -> list[float]:
     """Times of snapshots within the duration, in order: every interval, further ones, the end."""
-    if further.min() < 0:
+    if (further < 0).any():
         raise ValueError(f"snapshot_times must be numbers >= 0, got {further.min()}")
     every = np.concatenate([np.arange(0.0, duration, interval), further, [duration]])
     rounded: list[float] = np.unique(np.round(every[every <= duration], 12)).tolist()

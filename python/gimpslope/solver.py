@@ -64,18 +64,20 @@ class Solver:
         *,
         cell: float,
         walls: Walls = _ALL_FREE,
-        wall_positions: Sequence[float] | None = None,
-        origin: tuple[float, float] = (0.0, 0.0),
+        wall_positions: npt.ArrayLike | None = None,
+        origin: npt.ArrayLike = (0.0, 0.0),
         velocity: npt.ArrayLike | None = None,
         stress: npt.ArrayLike | None = None,
-        gravity: tuple[float, float] = (0.0, 0.0),
+        gravity: npt.ArrayLike = (0.0, 0.0),
         method: Method | None = None,
         instruction_set: str = "",
     ) -> None:
+        _check.instance("walls", walls, Walls, "Walls")
         if wall_positions is None and walls != _ALL_FREE:
             raise ValueError(f"wall_positions must be given with walls, got None with {walls}")
-        at_walls = _check.array("wall_positions", wall_positions or (0.0,) * 4, (4,))
-        method = _check.instance("method", method or Method(), Method, "a Method")
+        positions = (0.0,) * 4 if wall_positions is None else wall_positions
+        method = Method() if method is None else method
+        _check.instance("method", method, Method, "a Method")
         n = len(_check.instance("points", points, Points, "Points"))
         at_rest = np.zeros((n, 2))
         self._core = _core.Solver(
@@ -85,14 +87,14 @@ class Solver:
             points.mass,
             points.volume,
             points.material,
-            [material.to_core() for material in materials],
-            cell=cell,
-            origin=origin,
-            walls=walls.to_core(at_walls.tolist()),
-            instruction_set=instruction_set,
+            _to_core(materials),
+            cell=_check.positive("cell", cell),
+            origin=tuple(_check.array("origin", origin, (2,)).tolist()),
+            walls=walls.to_core(_check.array("wall_positions", positions, (4,)).tolist()),
+            instruction_set=_check.instance("instruction_set", instruction_set, str, "a name"),
             **method.to_core(),
         )
-        self._core.set_gravity(*gravity)
+        self._core.set_gravity(*_check.array("gravity", gravity, (2,)).tolist())
         if stress is not None:
             self.stress = np.asarray(stress)
 
@@ -110,6 +112,7 @@ class Solver:
         With `elastic` the materials are without their yield surfaces, as they are until a slope is
         let go.
         """
+        _check.instance("scene", scene, Scene, "a Scene")
         return cls(
             scene.points,
             [m.elastic() for m in scene.materials] if elastic else scene.materials,
@@ -127,13 +130,15 @@ class Solver:
         self._core.advance(1)
 
     def advance(self, steps: int) -> None:
-        """Take `steps` steps. Other Python threads run meanwhile, and Ctrl-C stops within a second.
+        """Take `steps` steps. Other Python threads run meanwhile, but this solver is theirs only
+        when the call has returned (`RuntimeError` before that); Ctrl-C stops it within a second.
 
         Raises
         ------
         Diverged
             If a point would move by more than half a cell in one step, or is no longer finite.
-            The error names step, time, point and the likely cause.
+            The error names step, time, point and the likely cause. The state is torn then, and no
+            step can follow.
         """
         self._core.advance(_check.whole("steps", steps, 0))
 
@@ -144,17 +149,19 @@ class Solver:
 
     def set_gravity(self, x: float, y: float, ramp: float = 0.0) -> None:
         """Acceleration (x, y), m/s2, which grows linearly over the first `ramp` seconds."""
-        self._core.set_gravity(x, y, ramp)
+        self._core.set_gravity(
+            _check.finite("x", x), _check.finite("y", y), _check.not_negative("ramp", ramp)
+        )
 
     def set_damping(self, local: float = 0.0, kinetic: bool = False) -> None:
         """Damping: `local` takes that share, in [0, 1), of each nodal force against the node's
         velocity (Cundall 1987); `kinetic` sets all velocities to zero whenever the kinetic energy
         has passed a peak."""
-        self._core.set_damping(local, kinetic)
+        self._core.set_damping(_check.finite("local", local), _check.flag("kinetic", kinetic))
 
     def set_materials(self, materials: Sequence[Material]) -> None:
         """Replace the materials, one for each of before; the stresses stay as they are."""
-        self._core.set_materials([material.to_core() for material in materials])
+        self._core.set_materials(_to_core(materials))
 
     def release_stress(self) -> float:
         """Return all stresses to the yield surfaces; the elastic energy released, J/m."""
@@ -263,8 +270,9 @@ class Solver:
     def stable_time_step(self) -> float:
         """The largest step that is stable in the present state, s: cell over wave speed.
 
-        Contiguous domains sum up to bilinear finite elements with lumped masses, whose frequencies
-        in plane strain stay below omega = 2 c / h; the limit is 2 / omega.
+        Contiguous domains add up to bilinear finite elements with lumped masses, whose frequencies
+        in plane strain are at most omega = 2 c / h; the limit is 2 / omega. A step that was
+        accepted is kept, also when the soil loosens and its wave speed grows.
         """
         return self._core.stable_time_step
 
@@ -296,3 +304,11 @@ class Solver:
 
     def _set(self, name: str, values: npt.ArrayLike, components: int) -> None:
         self._core.set(name, _check.array(name, values, (len(self), components)))
+
+
+def _to_core(materials: Sequence[Material]) -> list[_core.Material]:
+    if not isinstance(materials, Sequence) or isinstance(materials, str):
+        raise TypeError(f"materials must be a sequence of materials, got {materials!r}")
+    for number, material in enumerate(materials):
+        _check.instance(f"materials[{number}]", material, Material, "a material")
+    return [material.to_core() for material in materials]

@@ -17,7 +17,7 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("points", [400, 1500, 5872])
 def test_about_as_many_points_as_asked(points: int) -> None:
     """The face cuts cells: of the order of one point a row too many or too few."""
-    measured = benchmark.measure(points)
+    measured = benchmark.Case(points).measure()
     assert measured.points == pytest.approx(points, abs=2 * points**0.5)
     assert 0 < measured.slowest <= measured.median <= measured.fastest
     assert measured.threads == 1
@@ -25,11 +25,11 @@ def test_about_as_many_points_as_asked(points: int) -> None:
 
 
 def test_memory_is_under_a_kilobyte_a_point() -> None:
-    assert 100 < benchmark.measure(5872).bytes_per_point < 1000
+    assert 100 < benchmark.Case(5872).measure().bytes_per_point < 1000
 
 
 def test_instruction_set_and_threads_as_asked() -> None:
-    measured = benchmark.measure(400, threads=2, instruction_set="generic")
+    measured = benchmark.Case(400, threads=2, instruction_set="generic").measure()
     assert (measured.threads, measured.instruction_set) == (2, "generic")
 
 
@@ -39,7 +39,7 @@ def test_instruction_set_and_threads_as_asked() -> None:
 )
 def test_refused(options: dict[str, object], name: str) -> None:
     with pytest.raises(ValueError, match=f"{name} must be"):
-        benchmark.measure(400, **options)  # type: ignore[arg-type]
+        benchmark.Case(400, **options).measure()  # type: ignore[arg-type]
 
 
 def test_rate_counts_points_and_steps(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -47,7 +47,7 @@ def test_rate_counts_points_and_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     ticks = iter(range(1000))
     monkeypatch.setattr(benchmark.time, "perf_counter", lambda: float(next(ticks)))
     monkeypatch.setattr(benchmark, "_SECONDS", 0.2)
-    measured = benchmark.measure(400)
+    measured = benchmark.Case(400).measure()
     assert measured.median == measured.points * 20  # a fifth of the 100 steps of a second
 
 

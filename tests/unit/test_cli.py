@@ -153,7 +153,7 @@ def test_failed_run_has_exit_code_1(
     def fails(*_: Any, **__: Any) -> None:
         raise gs.NotSettledError("not at rest")
 
-    monkeypatch.setattr(gs, "simulate", fails)
+    monkeypatch.setattr(cli.Simulation, "run", fails)
     assert cli.main(COARSE) == 1
     assert "not at rest" in capsys.readouterr().err
 

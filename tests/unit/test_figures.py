@@ -90,7 +90,7 @@ def test_displacement_bars_stand_beside_the_paper(run: Run, ax: Axes) -> None:
     figures.displacement_bars({"soil": run}, REFERENCE, ax)
     heights = [bar.get_height() for bar in ax.patches]
     np.testing.assert_allclose(heights, [*run.max_displacement(), 9.3, 8.9, 5.4])
-    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["soil", "paper"]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["soil", "the paper"]
 
 
 def test_panels_share_their_scales(run: Run) -> None:

@@ -211,7 +211,7 @@ def test_what_the_next_step_will_be() -> None:
     assert stepped.alpha == pytest.approx(0.2 * dt / (0.5**2 / 6 + 0.125**2 / 3), rel=1e-12)
     stepped.set_time_step("fixed", 1e-3)
     assert stepped.time_step == 1e-3
-    assert (stepped.size, stepped.cell, stepped.threads) == (64, 0.5, 1)
+    assert (stepped.size, stepped.threads) == (64, 1)
 
 
 def test_memory_is_below_a_kilobyte_a_point() -> None:

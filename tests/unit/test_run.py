@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 import synthetic_run as synthetic
@@ -151,3 +152,13 @@ def test_table_for_notebooks(run: Run) -> None:
     assert "run.h5: finished" in table
     assert "<td>2.000 s</td>" in table
     assert repr(run).endswith("run.h5': finished>")
+
+
+def test_a_snapshot_goes_through_meshio(run: Run, tmp_path: Path) -> None:
+    state = run.snapshot(synthetic.END)
+    state.to_meshio().write(tmp_path / "end.vtu")
+    mesh = meshio.read(tmp_path / "end.vtu")
+    np.testing.assert_array_equal(mesh.points[:, :2], state.position)
+    np.testing.assert_array_equal(mesh.point_data["stress"], state.stress)
+    np.testing.assert_array_equal(mesh.point_data["displacement"][:, :2], state.displacement)
+    np.testing.assert_array_equal(mesh.point_data["density"], state.density)

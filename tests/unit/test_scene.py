@@ -54,7 +54,7 @@ def test_arrays_have_the_promised_form():
         "mass": (32,),
         "material": (32,),
     }
-    assert points.material.dtype == np.uint16
+    assert points.material.dtype == np.int32
     for field in fields(points):
         assert not getattr(points, field.name).flags.writeable
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -215,10 +216,10 @@ def test_diverged_names_step_time_point_and_cause() -> None:
     velocity[11] = (0.0, 1e8)
     solver.velocity = velocity
     with pytest.raises(
-        gs.Diverged, match=r"step 4, t = 0\.004 s: point \d+ at .*likely cause"
+        gs.Diverged, match=r"step 4 from t = 0\.003 s: point \d+ at .*likely cause"
     ) as e:
         solver.advance(10)
-    assert (e.value.step, e.value.time) == (4, pytest.approx(4e-3))
+    assert (e.value.step, e.value.time) == (4, pytest.approx(3e-3))
     assert 0 <= e.value.point < N
 
 
@@ -343,3 +344,45 @@ def test_instruction_sets_agree() -> None:
         assert solver.instruction_set == name
         solver.advance(50)
         np.testing.assert_allclose(solver.position, solvers[0].position, rtol=1e-10)
+
+
+def test_solver_that_steps_in_another_thread_is_refused() -> None:
+    solver = gs.Solver.of(SCENE)
+    started, done = threading.Event(), threading.Event()
+
+    def step() -> None:
+        started.set()
+        solver.advance(3000)
+        done.set()
+
+    worker = threading.Thread(target=step)
+    worker.start()
+    started.wait()
+    refused = 0
+    while not done.is_set():
+        try:
+            solver.energies()
+        except RuntimeError as error:
+            assert "stepping in another thread" in str(error)
+            refused += 1
+    worker.join()
+    assert refused > 0 and solver.steps == 3000
+
+
+def test_no_step_follows_a_failed_one() -> None:
+    solver = gs.Solver.of(SCENE, gs.Method(time_step=1e-3))
+    velocity = solver.velocity
+    velocity[0] = (1e9, 0.0)
+    solver.velocity = velocity
+    messages = []
+    for _ in range(2):
+        with pytest.raises(gs.Diverged, match="likely cause: its speed of") as error:
+            solver.step()
+        messages.append(str(error.value))
+    assert messages[0] == messages[1] and solver.steps == 0
+
+
+def test_fixed_steps_are_counted_to_the_last() -> None:
+    solver = gs.Solver.of(SCENE, gs.Method(time_step=1e-5, alpha=0.0))
+    solver.advance_to(0.2)
+    assert solver.steps == 20_000 and solver.time == 0.2

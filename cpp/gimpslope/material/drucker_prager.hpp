@@ -9,11 +9,11 @@
 
 namespace gimpslope {
 
-/// The cone sqrt(J2) + friction p = strength, p the mean stress, tension positive.
+/// The cone sqrt(J2) + eta p = k, p the mean stress, tension positive.
 struct DruckerPrager {
   Elastic elastic;
-  double friction;   // eta
-  double strength;   // xi c, Pa
+  double eta;
+  double k;          // xi c, Pa
   double flow;       // K etabar / (G + K eta etabar): mean stress lost per unit of overshoot
   double tension;    // largest mean stress, Pa
   double per_shear;  // 1 / (sqrt(3) G): equivalent plastic strain per sqrt(J2) returned
@@ -33,10 +33,10 @@ inline void return_to_surface(const DruckerPrager& law, Stress& s, double& plast
   const double xx = s.xx - trial_mean, yy = s.yy - trial_mean, zz = s.zz - trial_mean;
   const double trial = std::sqrt(0.5 * (xx * xx + yy * yy + zz * zz) + s.xy * s.xy);
 
-  const double overshoot = trial + law.friction * trial_mean - law.strength;
+  const double overshoot = trial + law.eta * trial_mean - law.k;
   const double returned = trial_mean - law.flow * (overshoot > 0.0 ? overshoot : 0.0);
   const double mean = returned < law.tension ? returned : law.tension;
-  const double room = law.strength - law.friction * mean;
+  const double room = law.k - law.eta * mean;
   const double limit = room > 0.0 ? room : 0.0;
   const double root_j2 = trial < limit ? trial : limit;
 

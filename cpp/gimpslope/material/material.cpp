@@ -93,8 +93,8 @@ Law law(const Material& m) {
   constants.elastic = {bulk - 2.0 / 3.0 * shear, shear};
   if (m.law == LawKind::elastic) return result;
   const ConeCoefficients cone = cone_coefficients(m);
-  constants.friction = cone.friction;
-  constants.strength = cone.cohesion * m.cohesion;
+  constants.eta = cone.friction;
+  constants.k = cone.cohesion * m.cohesion;
   constants.flow = bulk * cone.dilation / (shear + bulk * cone.friction * cone.dilation);
   constants.tension = tension_limit(m);
   constants.per_shear = 1.0 / (std::sqrt(3.0) * shear);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../instruction_set.hpp"
+#include "../travel.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -36,7 +37,7 @@ struct Gimp {
 
 /// Domains up to three cells wide, which reach five nodes: a cpGIMP domain after strong extension.
 struct WideGimp {
-  static constexpr int nodes = 5;
+  static constexpr int nodes = kWidestReach;
   static constexpr bool extended = true;
   static constexpr double widest = 3.0;
 
@@ -49,11 +50,11 @@ struct WideGimp {
   }
 
  private:
-  static double hat(double s) { return std::abs(s) < 1.0 ? 1.0 - std::abs(s) : 0.0; }
+  static double hat(double s) { return std::fabs(s) < 1.0 ? 1.0 - std::fabs(s) : 0.0; }
   /// Integral of the hat function up to s.
   static double area(double s) {
     const double c = s < -1.0 ? -1.0 : (s > 1.0 ? 1.0 : s);
-    return 0.5 + c - 0.5 * c * std::abs(c);
+    return 0.5 + c - 0.5 * c * std::fabs(c);
   }
 };
 

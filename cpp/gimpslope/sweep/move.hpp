@@ -5,15 +5,12 @@
 #include <cmath>
 
 #include "../domain.hpp"
+#include "../travel.hpp"
 #include "scatter.hpp"
 #include "weights.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
-
-/// Farthest a point may move in one step, cells. Slabs and active nodes are laid out for a travel
-/// of one cell between two sorts, and points are sorted once the travel has passed half a cell.
-constexpr double kFarthestStep = 0.5;
 
 constexpr double kHuge = 1e300;
 
@@ -22,8 +19,8 @@ inline int first_too_far(int n, double per_cell, const double* change) {
   for (int k = 0; k < n; ++k) {
     const double* c = change + 4 * k;
     const bool near =
-        per_cell * std::abs(c[0]) <= kFarthestStep && per_cell * std::abs(c[1]) <= kFarthestStep;
-    if (!near || !(std::abs(c[2]) + std::abs(c[3]) <= kHuge)) return k;
+        per_cell * std::fabs(c[0]) <= kFarthestStep && per_cell * std::fabs(c[1]) <= kFarthestStep;
+    if (!near || !(std::fabs(c[2]) + std::fabs(c[3]) <= kHuge)) return k;
   }
   return n - 1;
 }
@@ -54,7 +51,7 @@ void move_points(const View& view, int begin, int n, double alpha, const Weights
   }
   const double per_cell = 1.0 / view.grid.cell;
   const double travel = per_cell * (largest[0] > largest[1] ? largest[0] : largest[1]);
-  if (!(travel <= kFarthestStep && std::abs(sum_of_all.sum()) <= kHuge)) {
+  if (!(travel <= kFarthestStep && std::fabs(sum_of_all.sum()) <= kHuge)) {
     report.lost = begin + first_too_far(n, per_cell, change);
     return;
   }
@@ -71,7 +68,7 @@ inline void resize_domains(const View& view, int begin, int n, Report& report) {
   for (int k = 0; k < 2 * n; ++k) before[k] = half_length[k];
   update_domains(view, begin, n);
   for (int k = 0; k < 2 * n; ++k) {
-    const double change = per_cell * std::abs(half_length[k] - before[k]);
+    const double change = per_cell * std::fabs(half_length[k] - before[k]);
     const double width = 2.0 * per_cell * half_length[k];
     if (!(width > 0.0 && report.travel + change <= kFarthestStep)) {
       report.lost = begin + k / 2;

@@ -26,12 +26,15 @@ template <class Inner, class AtWall>
 void for_each_node(const GridView& g, int row, Inner inner, AtWall wall) {
   const NodeRange range = g.active[row];
   const bool whole = row <= g.wall[bottom] || row >= g.wall[top];
-  const int from = whole ? range.end : std::max(range.begin, g.wall[left] + 1);
-  const int to = whole ? range.end : std::min(range.end, g.wall[right]);
+  const int after_left = g.wall[left] + 1;
+  int from = whole || after_left > range.end ? range.end : after_left;
+  if (from < range.begin) from = range.begin;
+  int to = whole || g.wall[right] > range.end ? range.end : g.wall[right];
+  if (to < from) to = from;
   const int start = row * g.stride;
-  for (int i = range.begin; i < std::min(from, range.end); ++i) wall(start + i, i);
+  for (int i = range.begin; i < from; ++i) wall(start + i, i);
   for (int i = from; i < to; ++i) inner(start + i);
-  for (int i = std::max(from, to); i < range.end; ++i) wall(start + i, i);
+  for (int i = to; i < range.end; ++i) wall(start + i, i);
 }
 
 /// Velocity of the nodes of a row (paper eq. 20) within the walls; clears the forces.
@@ -76,8 +79,8 @@ inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
     const auto sign = [](double x) {
       return (x > 0.0 ? 1.0 : 0.0) - (x < 0.0 ? 1.0 : 0.0);
     };
-    fx -= step.local_damping * std::abs(fx) * sign(shown[0]);
-    fy -= step.local_damping * std::abs(fy) * sign(shown[2]);
+    fx -= step.local_damping * std::fabs(fx) * sign(shown[0]);
+    fy -= step.local_damping * std::fabs(fy) * sign(shown[2]);
     before[0] = inverse * m[2];
     before[1] = inverse * m[3];
     v[0] = before[0] + step.dt * inverse * fx;

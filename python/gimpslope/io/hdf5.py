@@ -6,7 +6,8 @@ Root attributes
     JSON text: scene, method, stages, and at the end of the run summary and timing (wall_seconds
     spent stepping, point_steps).
 /points
-    the points at the start of the slide, in the order in which they were given.
+    the points at the start of the slide, in the order in which they were given; until the slide
+    starts, those of the unloaded slope.
 /energy
     one column a dataset, all of the same length, rows of all stages.
 /snapshots
@@ -17,18 +18,21 @@ Root attributes
     attributes energy_released (J/m), settling_time (s), settling_ratio (kinetic over potential).
 
 Every dataset has the attributes units and description. The file is closed between flushes, and a
-process killed at any moment leaves it readable to the last flush.
+process killed at any moment leaves it readable to the last flush. A reading that meets a write of a
+run that is still going may fail and succeeds when tried again; the functions here do so.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import UTC, datetime
+from functools import wraps
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, ParamSpec, TypeVar
 
 import h5py
 import numpy as np
@@ -42,12 +46,16 @@ STAGES = ("gravity", "settling", "slide")
 STATUSES = ("running", "finished", "interrupted", "failed")
 
 Arrays = dict[str, NDArray[Any]]
+Parameters = ParamSpec("Parameters")
+Found = TypeVar("Found")
 
 JSON_ATTRIBUTES = {"scene", "method", "stages", "summary", "timing"}
 
 _ENERGY_CHUNK = 1024
 _TIME_CHUNK = 128
 _NO_TIMES = np.empty(0)
+_TRIES = 20
+_PAUSE = 0.01  # s
 
 
 class Quantity(NamedTuple):
@@ -245,6 +253,24 @@ class RunWriter:
             self._rows.clear()
 
 
+def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:
+    """A reading that meets a write of the run is tried again."""
+
+    @wraps(read)
+    def reading(*arguments: Parameters.args, **names: Parameters.kwargs) -> Found:
+        for _ in range(_TRIES):
+            try:
+                return read(*arguments, **names)
+            except FileNotFoundError:
+                raise
+            except OSError:
+                time.sleep(_PAUSE)
+        return read(*arguments, **names)
+
+    return reading
+
+
+@_patient
 def read_attributes(path: str | PathLike[str]) -> dict[str, Any]:
     """The root attributes; JSON text is decoded.
 
@@ -257,12 +283,14 @@ def read_attributes(path: str | PathLike[str]) -> dict[str, Any]:
     return attributes
 
 
+@_patient
 def read_points(path: str | PathLike[str]) -> Arrays:
     """The points at the start of the slide, by the names in `POINTS`; none yet: empty mapping."""
     with _opened(path) as file:
         return _read_all(file, "points", POINTS)
 
 
+@_patient
 def read_material_names(path: str | PathLike[str]) -> tuple[str, ...]:
     """The names that `material` of the points counts."""
     with _opened(path) as file:
@@ -270,6 +298,7 @@ def read_material_names(path: str | PathLike[str]) -> tuple[str, ...]:
         return tuple(str(name) for name in names)
 
 
+@_patient
 def read_energy(path: str | PathLike[str]) -> Arrays:
     """The energy rows of all stages, one array (k,) for every name in `ENERGY`."""
     with _opened(path) as file:
@@ -278,6 +307,7 @@ def read_energy(path: str | PathLike[str]) -> Arrays:
     return {name: column[:length] for name, column in columns.items()}
 
 
+@_patient
 def read_snapshot_times(path: str | PathLike[str]) -> NDArray[np.float64]:
     """Times of the complete snapshots, s, shape (k,)."""
     with _opened(path) as file:
@@ -287,12 +317,14 @@ def read_snapshot_times(path: str | PathLike[str]) -> NDArray[np.float64]:
         return times
 
 
+@_patient
 def read_snapshot(path: str | PathLike[str], number: int) -> Arrays:
     """The snapshot of that number, an array for every name in `FIELDS`, in 64 bits."""
     with _opened(path) as file:
         return {name: file["snapshots"][name][number].astype(np.float64) for name in FIELDS}
 
 
+@_patient
 def read_final(path: str | PathLike[str]) -> tuple[float, Arrays] | None:
     """Time (s) and fields, by the names in `FIELDS`, of the final state; None if there is none."""
     with _opened(path) as file:
@@ -301,6 +333,7 @@ def read_final(path: str | PathLike[str]) -> tuple[float, Arrays] | None:
         return float(file["final"].attrs["time"]), _read_all(file, "final", FIELDS)
 
 
+@_patient
 def read_trigger(path: str | PathLike[str]) -> dict[str, float]:
     """energy_released (J/m), settling_time (s) and settling_ratio; none yet: empty mapping."""
     with _opened(path) as file:
@@ -333,9 +366,11 @@ def _plain(value: Any) -> Any:
 
 
 def _make_room(path: Path, overwrite: bool) -> None:
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise ValueError(f"output must be a file in a directory that exists, got {str(path)!r}")
     if path.exists() and path.stat().st_size > 0 and not overwrite:
         raise FileExistsError(
-            f"path must name a new or empty file unless overwrite=True, got {str(path)!r}, "
+            f"output must be a new or empty file unless overwrite is set, got {str(path)!r}, "
             "which exists and is not empty"
         )
     path.open("wb").close()

@@ -36,36 +36,48 @@ class Measurement:
         return asdict(self)
 
 
-def measure(points: int = 23_490, threads: int = 1, instruction_set: str = "") -> Measurement:
-    """Step slope A, let go from rest under full gravity, and time it.
+@dataclass(frozen=True)
+class Case:
+    """Slope A, let go from rest under full gravity, as it is measured.
 
-    The cell is chosen for about the given number of points (23,490 at 0.1 m), and the points are
+    The cell is chosen for about the given number of `points` (23,490 at 0.1 m), and the points are
     displaced by up to a quarter of their spacing: a regular lattice flatters the memory.
     """
-    cell = 0.1 * (23_490 / _check.whole("points", points, 10)) ** 0.5
-    scene = reference.soil_slope(cell=cell)
-    solver = Solver(
-        _displaced(scene.points, scene.spacing / 4),
-        scene.materials,
-        cell=cell,
-        walls=scene.walls,
-        wall_positions=scene.wall_positions,
-        gravity=(0.0, -scene.gravity),
-        method=reference.method(threads=threads),
-        instruction_set=instruction_set,
-    )
-    solver.advance(_WARM_UP)
-    steps = max(1, round(_SECONDS * _WARM_UP / _timed(solver, _WARM_UP)))
-    rates = [len(solver) * steps / _timed(solver, steps) for _ in range(_REPEATS)]
-    return Measurement(
-        points=len(solver),
-        threads=solver.threads,
-        instruction_set=solver.instruction_set,
-        median=statistics.median(rates),
-        slowest=min(rates),
-        fastest=max(rates),
-        bytes_per_point=solver.bytes / len(solver),
-    )
+
+    points: int = 23_490
+    threads: int = 1
+    instruction_set: str = ""
+
+    def __post_init__(self) -> None:
+        _check.whole("points", self.points, 10)
+        _check.whole("threads", self.threads, 1)
+
+    def measure(self) -> Measurement:
+        """Step the slope and time it."""
+        cell = 0.1 * (23_490 / self.points) ** 0.5
+        scene = reference.soil_slope(cell=cell)
+        solver = Solver(
+            _displaced(scene.points, scene.spacing / 4),
+            scene.materials,
+            cell=cell,
+            walls=scene.walls,
+            wall_positions=scene.wall_positions,
+            gravity=(0.0, -scene.gravity),
+            method=reference.method(threads=self.threads),
+            instruction_set=self.instruction_set,
+        )
+        solver.advance(_WARM_UP)
+        steps = max(1, round(_SECONDS * _WARM_UP / _timed(solver, _WARM_UP)))
+        rates = [len(solver) * steps / _timed(solver, steps) for _ in range(_REPEATS)]
+        return Measurement(
+            points=len(solver),
+            threads=solver.threads,
+            instruction_set=solver.instruction_set,
+            median=statistics.median(rates),
+            slowest=min(rates),
+            fastest=max(rates),
+            bytes_per_point=solver.bytes / len(solver),
+        )
 
 
 def table(measurements: list[Measurement]) -> str:

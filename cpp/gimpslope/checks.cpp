@@ -1,0 +1,54 @@
+#include "checks.hpp"
+
+#include <cmath>
+#include <string>
+
+#include "error.hpp"
+
+namespace gimpslope {
+
+void check_values(std::span<const double> values, std::size_t count, bool positive,
+                  const char* parameter) {
+  require(values.size() == count, parameter, std::to_string(values.size()) + " values",
+          (std::to_string(count) + " values").c_str());
+  for (const double value : values) {
+    require(std::isfinite(value), parameter, value, "finite");
+    require(!positive || value > 0.0, parameter, value, "positive");
+  }
+}
+
+void check(const InitialPoints& p, std::size_t materials, ShapeKind shape) {
+  const std::size_t n = p.position.size() / 2;
+  require(n > 0 && n < (1u << 29), "position", std::to_string(n) + " points", "1 to 2^29 points");
+  check_values(p.position, 2 * n, false, "position");
+  check_values(p.velocity, 2 * n, false, "velocity");
+  check_values(p.half_length, 2 * n, shape != ShapeKind::linear, "half_length");
+  check_values(p.mass, n, true, "mass");
+  check_values(p.volume, n, true, "volume");
+  require(p.material.size() == n, "material", std::to_string(p.material.size()) + " values",
+          (std::to_string(n) + " values").c_str());
+  const std::string rule = "an index into the " + std::to_string(materials) + " materials";
+  for (const int m : p.material)
+    require(m >= 0 && static_cast<std::size_t>(m) < materials, "material", m, rule.c_str());
+}
+
+void check(const Method& m) {
+  const bool follows = m.domain_update != DomainUpdate::none;
+  require((m.shape == ShapeKind::cpgimp) == follows, "domain_update", follows ? "given" : "none",
+          "jacobian, stretch or deformation_diagonal with shape cpgimp, none with any other");
+  const double b = m.blend.value;
+  switch (m.blend.kind) {
+    case Blend::Kind::alpha:
+      require(b >= 0.0 && b <= 1.0, "alpha", b, "in [0, 1]");
+      break;
+    case Blend::Kind::viscosity:
+      require(b >= 0.0 && std::isfinite(b), "viscosity", b, "zero or positive and finite, in m2/s");
+      break;
+    case Blend::Kind::relaxation_time:
+      require(b > 0.0 && std::isfinite(b), "relaxation_time", b, "positive and finite, in s");
+      break;
+  }
+  require(m.threads >= 1 && m.threads <= 1024, "threads", m.threads, "in [1, 1024]");
+}
+
+}  // namespace gimpslope
