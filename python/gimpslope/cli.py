@@ -13,7 +13,8 @@ from pathlib import Path
 import gimpslope as gs
 
 from . import figures
-from .simulation import Recorder, Simulation
+from .recording import Recorder
+from .simulation import Simulation
 from .studies import benchmark, reference
 
 

@@ -15,7 +15,8 @@ _LOCAL_COEFFICIENT = 0.7
 
 @dataclass(frozen=True)
 class Gravity(Record):
-    """First stage: gravity grows linearly from zero while all materials are elastic.
+    """First stage: gravity grows linearly from zero while all materials are elastic, under the
+    damping of the second one.
 
     Parameters
     ----------

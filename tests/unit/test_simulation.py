@@ -20,7 +20,8 @@ import pytest
 
 import gimpslope as gs
 from gimpslope.io.hdf5 import ENERGY, FIELDS, POINTS
-from gimpslope.simulation import Recorder, Simulation
+from gimpslope.recording import Recorder
+from gimpslope.simulation import Simulation
 from gimpslope.studies import reference
 
 SLOPE = reference.soil_slope(cell=0.8)

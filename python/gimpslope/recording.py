@@ -1,0 +1,230 @@
+"""Recording a simulation: energy rows, snapshots, progress, and how it ended."""
+
+from __future__ import annotations
+
+import json
+import time as clock
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from tqdm import tqdm
+
+from . import _check
+from ._check import FloatArray
+from .io.hdf5 import FIELDS, STAGES, RunWriter
+from .run import Run, summarise
+from .solver import Diverged
+
+if TYPE_CHECKING:
+    from .simulation import Simulation
+
+ENERGY_INTERVAL = 0.005  # s
+SNAPSHOT_INTERVAL = 0.2  # s
+_FLUSH_INTERVAL = 1.0  # s of wall time
+_BAR = "{desc} {percentage:3.0f}%|{bar}| {n:.2f} of {total:.2f} s [{elapsed}<{remaining}{postfix}]"
+_OPEN_BAR = "{desc} {n:.2f} s, at most {total:.0f} s [{elapsed}{postfix}]"
+
+
+class Recorder:
+    """Advances a simulation and writes what happens: energy rows, snapshots, progress, the end."""
+
+    def __init__(
+        self,
+        simulation: Simulation,
+        output: str | PathLike[str],
+        *,
+        overwrite: bool = False,
+        energy_interval: float = ENERGY_INTERVAL,
+        snapshot_interval: float = SNAPSHOT_INTERVAL,
+        snapshot_times: npt.ArrayLike = (),
+        progress: bool = True,
+    ) -> None:
+        self._interval = _check.positive("energy_interval", energy_interval)
+        self.path = Path(_check.instance("output", output, str | PathLike, "a path"))
+        self.detail = ""
+        self._simulation = simulation
+        self._solver = simulation.solver
+        self._progress = _check.flag("progress", progress)
+        self._snapshot_times = _times(
+            simulation.stages.slide.duration,
+            _check.positive("snapshot_interval", snapshot_interval),
+            _check.array("snapshot_times", snapshot_times, ("k",)),
+        )
+        self._stage = 0
+        self._bar: tqdm[Any] | None = None
+        self._rows: list[dict[str, float]] = []
+        self._rows_end = 0
+        self._stage_start = 0.0
+        self._intervals = 0
+        self._seconds = 0.0
+        self._steps = 0
+        self._flushed = clock.monotonic()
+        self._writer = RunWriter(
+            self.path,
+            scene_json=json.dumps(simulation.scene.to_dict()),
+            method_json=json.dumps(simulation.method.to_dict()),
+            stages_json=json.dumps(simulation.stages.to_dict()),
+            version=version("gimpslope"),
+            instruction_set=self._solver.instruction_set,
+            threads=self._solver.threads,
+            overwrite=_check.flag("overwrite", overwrite),
+        )
+        self._write_points()
+
+    def __enter__(self) -> Recorder:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: Any
+    ) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        if kind is None:
+            self._finish("finished", self.detail)
+        elif issubclass(kind, KeyboardInterrupt):
+            where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
+            self._finish("interrupted", f"stopped by the user {where}")
+        else:
+            self._finish("failed", f"{kind.__name__}: {error}", sound=kind is not Diverged)
+
+    def start(self, stage: str, duration: float) -> None:
+        """Begin the rows and the bar of a stage that lasts at most `duration` seconds."""
+        self._stage = STAGES.index(stage)
+        if self._bar is not None:
+            self._bar.close()
+        self._bar = tqdm(
+            total=duration,
+            desc=f"{stage:8}",
+            disable=not self._progress,
+            bar_format=_OPEN_BAR if stage == "settling" else _BAR,
+        )
+        self._stage_start = self._solver.time
+        self._intervals = 0
+        self._row()
+        if stage == "slide":
+            self._snapshot_if_due()
+
+    def next_time(self) -> float:
+        """When the next row, or snapshot of the slide, is due, s."""
+        due = self._next_row()
+        if STAGES[self._stage] == "slide" and self._snapshot_times:
+            due = min(due, self._snapshot_times[0])
+        return due
+
+    def advance(self, until: float) -> dict[str, float]:
+        """Step to the time `until` and record what is due; the energies then."""
+        steps = self._solver.steps
+        with self._timed():
+            try:
+                self._solver.advance_to(until)
+            finally:
+                self._steps += self._solver.steps - steps
+        row = self._row()
+        if STAGES[self._stage] == "slide":
+            self._snapshot_if_due()
+        if clock.monotonic() - self._flushed > _FLUSH_INTERVAL:
+            self._flush()
+        self._show()
+        return row
+
+    def release(self, energy: float, settling_time: float, settling_ratio: float) -> None:
+        """Record the trigger: the points now are the reference of all displacements."""
+        self._write_points()
+        self._writer.write_trigger(
+            energy_released=energy, settling_time=settling_time, settling_ratio=settling_ratio
+        )
+
+    def _row(self) -> dict[str, float]:
+        energies = self._solver.energies()
+        row = {
+            "stage": self._stage,
+            "time": self._solver.time,
+            "step": self._solver.steps,
+            **energies._asdict(),
+        }
+        self._rows.append(row)
+        self._rows_end = self._solver.steps
+        while self._next_row() <= self._solver.time:
+            self._intervals += 1
+        return row
+
+    def _next_row(self) -> float:
+        """Counted in intervals: times that are summed up drift."""
+        return round(self._stage_start + (self._intervals + 1) * self._interval, 12)
+
+    def _snapshot_if_due(self) -> None:
+        due = False
+        while self._snapshot_times and self._snapshot_times[0] <= self._solver.time:
+            self._snapshot_times.pop(0)
+            due = True
+        if due:
+            self._hand_over_rows()
+            self._writer.append_snapshot(self._solver.time, self._fields())
+            self._flushed = clock.monotonic()
+
+    def _fields(self) -> dict[str, Any]:
+        return {name: getattr(self._solver, name) for name in FIELDS}
+
+    def _write_points(self) -> None:
+        solver, scene = self._solver, self._simulation.scene
+        names = ["soil", "stone"][: len(scene.materials)]
+        linear = self._simulation.method.shape == "linear"
+        self._writer.write_points(
+            solver.position,
+            solver.mass,
+            solver.volume,
+            scene.points.half_length if linear else solver.half_length,
+            solver.material,
+            names,
+        )
+
+    def _hand_over_rows(self) -> None:
+        if self._rows:
+            rows, self._rows = self._rows, []
+            self._writer.append_energy(
+                {name: np.array([r[name] for r in rows]) for name in rows[0]}
+            )
+
+    def _flush(self) -> None:
+        self._hand_over_rows()
+        self._writer.flush()
+        self._flushed = clock.monotonic()
+
+    def _finish(self, status: str, detail: str, sound: bool = True) -> None:
+        """Write the end; of a state that is not sound, torn in the middle of a step, nothing."""
+        if sound and self._rows_end != self._solver.steps:
+            self._row()
+        self._hand_over_rows()
+        if sound and STAGES[self._stage] == "slide":
+            self._writer.write_final(self._solver.time, self._fields())
+        self._writer.write_timing(self._seconds, self._steps * len(self._solver))
+        self._writer.finish(status, detail, summarise(Run(self._writer.path)))
+
+    def _show(self) -> None:
+        if self._bar is not None and not self._bar.disable:
+            rate = self._steps * len(self._solver) / max(self._seconds, 1e-9) / 1e6
+            self._bar.set_postfix_str(f"{rate:.1f} M point-steps/s", refresh=False)
+            self._bar.update(self._solver.time - self._stage_start - self._bar.n)
+
+    @contextmanager
+    def _timed(self) -> Iterator[None]:
+        start = clock.perf_counter()
+        try:
+            yield
+        finally:
+            self._seconds += clock.perf_counter() - start
+
+
+def _times(duration: float, interval: float, further: FloatArray) -> list[float]:
+    """Times of snapshots within the duration, in order: every interval, further ones, the end."""
+    if (further < 0).any():
+        raise ValueError(f"snapshot_times must be numbers >= 0, got {further.min()}")
+    every = np.concatenate([np.arange(0.0, duration, interval), further, [duration]])
+    rounded: list[float] = np.unique(np.round(every[every <= duration], 12)).tolist()
+    return rounded
