@@ -52,7 +52,7 @@ PAPER = MappingProxyType(
 horizontal and vertical displacement put right; of the speed it says "exceeding 3 m/s"."""
 
 SNAPSHOT_TIMES = (0.5, 1.0, *(round(1.4 + 0.05 * k, 2) for k in range(15)), 3.5, 5.0, 10.0)
-"""Times of the paper's maps, s; those at the peak, 1.5 to 2 s, are met to a fortieth of a second."""
+"""Times of the paper's maps, s; a peak between 1.4 and 2.1 s is met to a fortieth of a second."""
 
 
 def soil(reading: str = "identified") -> DruckerPrager:
