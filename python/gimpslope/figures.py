@@ -17,7 +17,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
 from ._check import FloatArray
-from .run import PLASTIC_THRESHOLD, Energy, Run, Snapshot
+from .energy import Energy
+from .run import PLASTIC_THRESHOLD, Run
+from .snapshot import Snapshot
 
 Moment = float | Literal["peak"]
 

@@ -18,8 +18,9 @@ from tqdm import tqdm
 from . import _check
 from ._check import FloatArray
 from .io.hdf5 import FIELDS, STAGES, RunWriter
-from .run import Run, summarise
+from .run import Run
 from .solver import Diverged
+from .summary import summarise
 
 if TYPE_CHECKING:
     from .simulation import Simulation

@@ -11,8 +11,9 @@ import pytest
 import synthetic_run as synthetic
 
 from gimpslope.method import Method
-from gimpslope.run import Run, open, summarise
+from gimpslope.run import Run, open
 from gimpslope.stages import Stages
+from gimpslope.summary import summarise
 
 REACH = synthetic.travel(synthetic.END) * synthetic.SHARE.max()
 

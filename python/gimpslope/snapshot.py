@@ -1,0 +1,119 @@
+"""The points of a run at one time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from ._check import FloatArray
+
+if TYPE_CHECKING:
+    import meshio
+
+
+class MaxDisplacement(NamedTuple):
+    """Largest displacements of any point, m; each may be of another point."""
+
+    total: float
+    horizontal: float
+    vertical: float
+
+
+@dataclass(frozen=True, eq=False)
+class PointsAtStart:
+    """The points at the start of the slide, in the order in which they were given.
+
+    Attributes
+    ----------
+    position : m, shape (n, 2)
+    mass : kg/m, shape (n,)
+    volume : area in the plane, m2, shape (n,)
+    half_length : half the sides of the point's rectangle, m, shape (n, 2)
+    material : index into the scene's materials, 0 being the soil, shape (n,)
+    """
+
+    position: FloatArray
+    mass: FloatArray
+    volume: FloatArray
+    half_length: FloatArray
+    material: npt.NDArray[np.int32]
+
+    def __len__(self) -> int:
+        return len(self.position)
+
+
+@dataclass(frozen=True, eq=False)
+class Snapshot:
+    """The points at one time of the slide.
+
+    Attributes
+    ----------
+    time : since the trigger, s
+    position : m, shape (n, 2)
+    velocity : m/s, shape (n, 2)
+    stress : xx, yy, zz, xy, tension positive, Pa, shape (n, 4)
+    plastic_strain : equivalent plastic strain since the trigger, shape (n,)
+    volume : area in the plane, m2, shape (n,)
+    points : the points at the start of the slide
+    """
+
+    time: float
+    position: FloatArray
+    velocity: FloatArray
+    stress: FloatArray
+    plastic_strain: FloatArray
+    volume: FloatArray
+    points: PointsAtStart
+
+    @property
+    def speed(self) -> FloatArray:
+        """Magnitude of the velocity, m/s, shape (n,)."""
+        speed: FloatArray = np.linalg.norm(self.velocity, axis=1)
+        return speed
+
+    @property
+    def displacement(self) -> FloatArray:
+        """Displacement since the trigger, m, shape (n, 2)."""
+        return self.position - self.points.position
+
+    @property
+    def density(self) -> FloatArray:
+        """Mass over present volume, kg/m3, shape (n,)."""
+        density: FloatArray = self.points.mass / self.volume
+        return density
+
+    def to_meshio(self) -> meshio.Mesh:
+        """The points as vertices with their fields, for any format that meshio writes.
+
+        `run.snapshot(1.6).to_meshio().write("slope.vtu")` makes a file for ParaView. Vectors get a
+        third component of zero; stress is xx, yy, zz, xy.
+        """
+        import meshio
+
+        n = len(self.position)
+        deep = {
+            name: np.column_stack([getattr(self, name), np.zeros(n)])
+            for name in ("position", "velocity", "displacement")
+        }
+        return meshio.Mesh(
+            deep.pop("position"),
+            [("vertex", np.arange(n)[:, np.newaxis])],
+            point_data={
+                **deep,
+                "stress": self.stress,
+                "plastic_strain": self.plastic_strain,
+                "density": self.density,
+                "material": self.points.material,
+            },
+        )
+
+    @property
+    def max_displacement(self) -> MaxDisplacement:
+        """Largest displacements of any point since the trigger, m."""
+        moved = self.displacement
+        horizontal, vertical = np.abs(moved).max(axis=0)
+        total = float(np.hypot(*moved.T).max())
+        return MaxDisplacement(total, float(horizontal), float(vertical))

@@ -1,0 +1,103 @@
+"""The main results of a run in a few numbers."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from .energy import Energy
+from .io import hdf5
+from .snapshot import MaxDisplacement
+
+if TYPE_CHECKING:
+    from .run import Run
+
+_READABLE = {
+    "points": "{:,}",
+    "steps": "{:,}",
+    "stones": "{:,}",
+    "peak_kinetic_energy": "{:,.0f} J/m",
+    "time_of_peak": "{:.3f} s",
+    "speed_at_peak": "{:.3f} m/s",
+    "max_speed": "{:.3f} m/s",
+    "final_kinetic_energy": "{:,.3g} J/m",
+    "simulated_time": "{:.3f} s",
+    "max_displacement_total": "{:.3f} m",
+    "max_displacement_horizontal": "{:.3f} m",
+    "max_displacement_vertical": "{:.3f} m",
+    "toe": "{:.3f} m",
+    "wall_seconds": "{:.1f} s",
+    "point_steps_per_second": "{:,.0f} /s",
+}
+
+
+def summarise(run: Run) -> dict[str, float | int | None]:
+    """The main results of a run from the data written so far, in SI units.
+
+    Keys: points, steps (of all stages), stones, peak_kinetic_energy (J/m), time_of_peak,
+    speed_at_peak (of the fastest point then), max_speed, max_displacement_total, _horizontal and
+    _vertical, toe (largest x of a point in the end), final_kinetic_energy (J/m), simulated_time
+    (of the slide), wall_seconds (spent stepping) and point_steps_per_second. What the run has not
+    reached, or not recorded, is None.
+    """
+    return {
+        "points": len(hdf5.read_points(run.path).get("mass", ())),
+        "steps": _steps(hdf5.read_energy(run.path)["step"]),
+        "stones": len(run.scene.stones),
+        **_energy_summary(run.energy),
+        **_displacement_summary(run),
+        **_speed_of_computing(run.attributes.get("timing")),
+    }
+
+
+def _steps(column: npt.NDArray[np.int64]) -> int:
+    """All steps taken, given a count that starts again from zero whenever the clock does."""
+    ends = np.append(column[:-1][np.diff(column) < 0], column[-1:])
+    return int(ends.sum())
+
+
+def _energy_summary(energy: Energy) -> dict[str, float | None]:
+    names = (
+        "peak_kinetic_energy",
+        "time_of_peak",
+        "speed_at_peak",
+        "max_speed",
+        "final_kinetic_energy",
+        "simulated_time",
+    )
+    if len(energy) == 0:
+        return dict.fromkeys(names)
+    values = (
+        energy.peak.value,
+        energy.peak.time,
+        energy.speed_at_peak,
+        float(energy.max_speed.max()),
+        float(energy.kinetic[-1]),
+        float(energy.time[-1]),
+    )
+    return dict(zip(names, values, strict=True))
+
+
+def _displacement_summary(run: Run) -> dict[str, float | None]:
+    names = [f"max_displacement_{name}" for name in MaxDisplacement._fields] + ["toe"]
+    if len(run.times) == 0:
+        return dict.fromkeys(names)
+    state = run.final
+    values = (*state.max_displacement, float(state.position[:, 0].max()))
+    return dict(zip(names, values, strict=True))
+
+
+def _speed_of_computing(timing: dict[str, Any] | None) -> dict[str, float | None]:
+    seconds = timing["wall_seconds"] if timing else None
+    rate = timing["point_steps"] / seconds if timing and seconds else None
+    return {"wall_seconds": seconds, "point_steps_per_second": rate}
+
+
+def readable(summary: dict[str, float | int | None]) -> dict[str, str]:
+    """The values as text, with their units."""
+    return {
+        name: "not recorded" if value is None else _READABLE[name].format(value)
+        for name, value in summary.items()
+    }
