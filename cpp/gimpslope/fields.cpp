@@ -104,13 +104,13 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
   const FieldView f = field(name);
   check_values(values, static_cast<std::size_t>(f.components) * points_.size, name == "volume",
                name.c_str());
+  if (name == "position") grid_.check_reach(values);
   for (int k = 0; k < points_.size; ++k)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
   nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;
-  prepare();
 }
 
 std::vector<std::int32_t> Solver::material_of_points() const {

@@ -40,19 +40,56 @@ Grid::Grid(double cell, double x, double y, const std::array<Wall, 4>& walls)
   }
 }
 
+void Grid::check_size(std::int64_t columns, std::int64_t rows) {
+  constexpr std::int64_t most = std::int64_t{1} << 25;  // nodes; 4 GiB
+  require(columns <= most && rows <= most && columns * rows <= most, "position",
+          std::to_string(columns) + " x " + std::to_string(rows),
+          "spread over at most 2^25 cells; with this cell size the points cover too wide a box");
+}
+
+void Grid::check_reach(std::span<const double> position) const {
+  double low[2] = {position[0], position[1]}, high[2] = {position[0], position[1]};
+  for (std::size_t k = 0; k < position.size(); ++k) {
+    low[k % 2] = std::min(low[k % 2], position[k]);
+    high[k % 2] = std::max(high[k % 2], position[k]);
+  }
+  const double origin[2] = {x_, y_};
+  constexpr double farthest = 1e9;
+  for (int axis = 0; axis < 2; ++axis) {
+    for (const double end : {low[axis], high[axis]})
+      require(std::abs(end - origin[axis]) / cell_ < farthest, "position", end,
+              "within 1e9 cells of the origin");
+  }
+  check_size(static_cast<std::int64_t>((high[0] - low[0]) / cell_),
+             static_cast<std::int64_t>((high[1] - low[1]) / cell_));
+}
+
 void Grid::fit(Cell low, Cell high) {
   const std::int64_t columns = std::int64_t{high.column} - low.column + 1;
   const std::int64_t rows = std::int64_t{high.row} - low.row + 1;
-  constexpr std::int64_t most = std::int64_t{1} << 25;  // 4 GiB
-  require(columns * rows <= most, "position",
-          std::to_string(columns) + " x " + std::to_string(rows),
-          "spread over at most 2^25 cells; with this cell size the points cover too wide a box");
+  check_size(columns, rows);
+  Buffer<double> update(4 * columns * rows, 0.0);
+  keep(update, low, high);
+  update_.swap(update);
   low_ = low;
   columns_ = static_cast<int>(columns);
   rows_ = static_cast<int>(rows);
   active_.assign(rows, {columns_, 0});
-  for (Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_})
+  for (Buffer<double>* field : {&momentum_, &velocity_, &force_})
     field->assign(4 * columns * rows, 0.0);
+}
+
+void Grid::keep(Buffer<double>& update, Cell low, Cell high) const {
+  for (int row = 0; row < rows_; ++row) {
+    const std::int64_t to_row = std::int64_t{low_.row} + row - low.row;
+    const int begin = std::max(active_[row].begin, low.column - low_.column);
+    const int end = std::min(active_[row].end, high.column - low_.column + 1);
+    if (to_row < 0 || to_row > high.row - low.row || begin >= end) continue;
+    const std::int64_t columns = std::int64_t{high.column} - low.column + 1;
+    std::copy(update_.begin() + 4 * (std::int64_t{row} * columns_ + begin),
+              update_.begin() + 4 * (std::int64_t{row} * columns_ + end),
+              update.begin() + 4 * (to_row * columns + low_.column + begin - low.column));
+  }
 }
 
 void Grid::activate(int row, NodeRange columns) {

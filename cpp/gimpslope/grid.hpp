@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "buffer.hpp"
@@ -25,7 +26,11 @@ class Grid {
   double x() const { return x_; }
   double y() const { return y_; }
 
-  /// Makes the window hold the nodes from `low` to `high`, both included, and clears it.
+  /// Refuses positions {x, y} that no window can hold.
+  void check_reach(std::span<const double> position) const;
+
+  /// Makes the window hold the nodes from `low` to `high`, both included, and clears it but for the
+  /// last motion of its nodes, by which walls know what they hold.
   void fit(Cell low, Cell high);
 
   /// Declares the nodes `columns` of the window's `row` active, beside those that are already.
@@ -36,6 +41,9 @@ class Grid {
   std::int64_t bytes() const;
 
  private:
+  static void check_size(std::int64_t columns, std::int64_t rows);
+  void keep(Buffer<double>& update, Cell low, Cell high) const;
+
   double cell_, x_, y_;
   std::array<Wall, 4> walls_;
   std::array<std::int32_t, 4> wall_node_;  // from the anchor

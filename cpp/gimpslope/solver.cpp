@@ -109,7 +109,10 @@ void Solver::choose_kernel() {
 
 void Solver::advance(std::int64_t steps) {
   require(steps >= 0, "steps", steps, "zero or positive");
-  for (std::int64_t k = 0; k < steps; ++k) step(time_step());
+  for (std::int64_t k = 0; k < steps; ++k) {
+    const double dt = time_step();
+    step(dt, dt);
+  }
 }
 
 bool Solver::advance_to(double time, std::int64_t most) {
@@ -124,7 +127,7 @@ bool Solver::advance_to(double time, std::int64_t most) {
       return false;
     } else {
       const bool shorten = method_.time_step.kind == TimeStep::Kind::courant && left < 2.0 * dt;
-      step(shorten ? left / std::ceil(left / dt) : dt);
+      step(shorten ? left / std::ceil(left / dt) : dt, dt);
     }
   }
   return true;
@@ -153,10 +156,12 @@ void Solver::prepare() {
   }
 }
 
-void Solver::step(double dt) {
+/// A step of dt, which may be shorter than the `whole` one: its PIC share is less in proportion, so
+/// that the times at which a run is looked at do not change how it is damped.
+void Solver::step(double dt, double whole) {
   if (!failure_.empty()) throw Diverged(failure_, steps_ + 1, time_, -1);
   prepare();
-  const double share = alpha_of(dt);
+  const double share = alpha_of(whole) * (dt / whole);
   if (!(share <= 1.0))
     fail("the step of " + text(dt) + " s is too long for the velocity blend", -1);
   const double factor = gravity_.factor(time_ + dt);

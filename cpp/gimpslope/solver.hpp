@@ -85,7 +85,7 @@ class Solver {
   void choose_kernel();
   View view();
   void prepare();
-  void step(double dt);
+  void step(double dt, double whole);
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
   [[noreturn]] void fail_at(int lost, double dt);
   void follow_width(double width);

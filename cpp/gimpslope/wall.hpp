@@ -20,10 +20,14 @@ enum Side { left, right, bottom, top };
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 /// Velocity of a node at a wall before the strain step: no motion through a roller or fixed wall,
-/// none into a Coulomb wall. `outward` is +1 where the wall lies towards larger coordinates.
-inline void constrain(WallKind kind, double outward, double& normal, double& tangential) {
+/// none into a Coulomb wall, and none off one against which the node was held in the step before.
+/// Whether it comes off is for the forces to tell: a node that rests swings a little both ways, and
+/// a strain from the one way, which the wall does not let it move, would add energy in every swing.
+/// `outward` is +1 where the wall lies towards larger coordinates.
+inline void constrain(WallKind kind, double outward, bool held, double& normal,
+                      double& tangential) {
   if (kind == WallKind::coulomb) {
-    if (outward * normal > 0.0) normal = 0.0;
+    if (held || outward * normal > 0.0) normal = 0.0;
   } else if (kind != WallKind::free) {
     normal = 0.0;
     if (kind == WallKind::fixed) tangential = 0.0;
@@ -37,7 +41,7 @@ inline void react(WallKind kind, double mu, double outward, double& normal, doub
     const double speed = std::fabs(tangential), stopped = mu * std::fabs(normal);
     tangential *= speed > stopped ? 1.0 - stopped / speed : 0.0;
   }
-  constrain(kind, outward, normal, tangential);
+  constrain(kind, outward, false, normal, tangential);
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

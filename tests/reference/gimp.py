@@ -82,6 +82,7 @@ class Reference:
         y = origin[1] + cell * np.arange(low[1], high[1] + 1)
         self.lines = (x, y)
         self.nodes = np.array([(a, b) for a in x for b in y])
+        self.node_velocity = np.zeros_like(self.nodes)  # of the last step
 
     def set_gravity(self, gx: float, gy: float, ramp: float) -> None:
         """Acceleration, m/s2, reached linearly over `ramp` seconds (0: at once)."""
@@ -136,7 +137,7 @@ class Reference:
         mass = s.T @ self.mass
         momentum = s.T @ (self.mass[:, None] * self.velocity)
         v_raw = _divide(momentum, mass)
-        v = hold_velocity(v_raw, self.nodes, self.walls, self.cell)
+        v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
 
         velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
         self._deform(velocity_gradient, dt)
@@ -148,7 +149,7 @@ class Reference:
         force -= self.local_damping * np.abs(force) * np.sign(v)
 
         momentum = hold_momentum(momentum + dt * force, self.nodes, self.walls, self.cell)
-        v_new = _divide(momentum, mass)
+        v_new = self.node_velocity = _divide(momentum, mass)
 
         alpha = self.alpha(dt)
         pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)

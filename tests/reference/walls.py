@@ -22,8 +22,10 @@ def _each(
         yield kind, friction, axis, into, touched
 
 
-def hold_velocity(velocity: Array, nodes: Array, walls: Sequence[Wall], cell: float) -> Array:
-    """Node velocity (n_nodes, 2) as the strain step sees it."""
+def hold_velocity(
+    velocity: Array, before: Array, nodes: Array, walls: Sequence[Wall], cell: float
+) -> Array:
+    """Node velocity (n_nodes, 2) as the strain step sees it; `before` is that of the last step."""
     v = velocity.copy()
     for kind, _, axis, into, touched in _each(nodes, walls, cell):
         if kind == "fixed":
@@ -31,7 +33,8 @@ def hold_velocity(velocity: Array, nodes: Array, walls: Sequence[Wall], cell: fl
         elif kind == "roller":
             v[touched, axis] = 0.0
         elif kind == "coulomb":
-            v[touched & (into * v[:, axis] > 0), axis] = 0.0
+            held = before[:, axis] == 0.0
+            v[touched & (held | (into * v[:, axis] > 0)), axis] = 0.0
     return v
 
 

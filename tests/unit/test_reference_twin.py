@@ -266,8 +266,18 @@ def test_walls_hold_every_node_on_or_beyond_them() -> None:
     expected = {"free": [-1, 2], "roller": [0, 2], "fixed": [0, 0], "coulomb": [0, 2]}
     for kind, held in expected.items():
         walls = [(kind, 0.0, 0.0), *FREE[1:]]
-        for hold in (hold_velocity, hold_momentum):
-            np.testing.assert_array_equal(hold(v, nodes, walls, H), [held, held, [-1, 2]])
+        for got in (hold_velocity(v, v, nodes, walls, H), hold_momentum(v, nodes, walls, H)):
+            np.testing.assert_array_equal(got, [held, held, [-1, 2]])
+
+
+def test_coulomb_wall_lets_go_what_it_did_not_hold() -> None:
+    """The strain step sees a node leave the wall only if it moved along the normal before."""
+    walls = [FREE[0], FREE[1], ("coulomb", 0.5, 0.0), FREE[3]]
+    nodes = np.array([[0.0, 0.0], [H, 0.0]])
+    leaving = np.array([[1.0, 0.3], [1.0, 0.3]])
+    before = np.array([[1.0, 0.0], [1.0, 0.1]])
+    got = hold_velocity(leaving, before, nodes, walls, H)
+    np.testing.assert_array_equal(got, [[1.0, 0.0], [1.0, 0.3]])
 
 
 @pytest.mark.parametrize(

@@ -10,14 +10,14 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Calls visit(kind, friction, outward, normal, tangential) for each wall that node (column, row)
-/// lies on or beyond, in the order left, right, bottom, top.
+/// Calls visit(side, outward, normal, tangential) for each wall that node (column, row) lies on or
+/// beyond, in the order left, right, bottom, top.
 template <class Visit>
 void for_each_wall(const GridView& g, int column, int row, double* v, Visit visit) {
-  if (column <= g.wall[left]) visit(g.kind[left], g.friction[left], -1.0, v[0], v[1]);
-  if (column >= g.wall[right]) visit(g.kind[right], g.friction[right], 1.0, v[0], v[1]);
-  if (row <= g.wall[bottom]) visit(g.kind[bottom], g.friction[bottom], -1.0, v[1], v[0]);
-  if (row >= g.wall[top]) visit(g.kind[top], g.friction[top], 1.0, v[1], v[0]);
+  if (column <= g.wall[left]) visit(left, -1.0, v[0], v[1]);
+  if (column >= g.wall[right]) visit(right, 1.0, v[0], v[1]);
+  if (row <= g.wall[bottom]) visit(bottom, -1.0, v[1], v[0]);
+  if (row >= g.wall[top]) visit(top, 1.0, v[1], v[0]);
 }
 
 /// Calls inner(node) for the active nodes of a row that no wall touches, wall(node, column) for the
@@ -59,9 +59,12 @@ inline void start_nodes(const GridView& g, int row) {
       [&](int node, int column) {
         double v[2];
         velocity(node, v);
+        const double* moved = g.update + 4 * node;  // in the step before
         for_each_wall(g, column, row, v,
-                      [](WallKind kind, double, double outward, double& normal,
-                         double& tangential) { constrain(kind, outward, normal, tangential); });
+                      [&](Side side, double outward, double& normal, double& tangential) {
+                        const bool held = moved[side == bottom || side == top] == 0.0;
+                        constrain(g.kind[side], outward, held, normal, tangential);
+                      });
         set(node, v);
       });
 }
@@ -102,11 +105,10 @@ inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
       [&](int node, int column) {
         double before[2], v[2];
         advance(node, before, v);
-        for_each_wall(
-            g, column, row, v,
-            [](WallKind kind, double friction, double outward, double& normal, double& tangential) {
-              react(kind, friction, outward, normal, tangential);
-            });
+        for_each_wall(g, column, row, v,
+                      [&](Side side, double outward, double& normal, double& tangential) {
+                        react(g.kind[side], g.friction[side], outward, normal, tangential);
+                      });
         set(node, before, v);
       });
 }
