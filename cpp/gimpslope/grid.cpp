@@ -68,7 +68,7 @@ void Grid::fit(Cell low, Cell high) {
   const std::int64_t columns = std::int64_t{high.column} - low.column + 1;
   const std::int64_t rows = std::int64_t{high.row} - low.row + 1;
   check_size(columns, rows);
-  Buffer<double> update(4 * columns * rows, 0.0);
+  Buffer<double> update(4 * columns * rows, kNoMotion);
   keep(update, low, high);
   update_.swap(update);
   low_ = low;

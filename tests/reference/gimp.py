@@ -14,7 +14,7 @@ from .drucker_prager import (
     rotate,
 )
 from .shapes import weights
-from .walls import Wall, hold_momentum, hold_velocity
+from .walls import NO_MOTION, Wall, hold_momentum, hold_velocity
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ class Reference:
         y = origin[1] + cell * np.arange(low[1], high[1] + 1)
         self.lines = (x, y)
         self.nodes = np.array([(a, b) for a in x for b in y])
-        self.node_velocity = np.zeros_like(self.nodes)  # of the last step
+        self.node_velocity = np.full_like(self.nodes, NO_MOTION)  # of the last step
 
     def set_gravity(self, gx: float, gy: float, ramp: float) -> None:
         """Acceleration, m/s2, reached linearly over `ramp` seconds (0: at once)."""
@@ -149,7 +149,8 @@ class Reference:
         force -= self.local_damping * np.abs(force) * np.sign(v)
 
         momentum = hold_momentum(momentum + dt * force, self.nodes, self.walls, self.cell)
-        v_new = self.node_velocity = _divide(momentum, mass)
+        v_new = _divide(momentum, mass)
+        self.node_velocity = np.where(mass[:, None] > 0, v_new, NO_MOTION)
 
         alpha = self.alpha(dt)
         pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)

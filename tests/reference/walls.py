@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Wall = tuple[str, float, float]
 
+# what counts as the last motion of a node that had no mass: not zero, which is held or stuck
+NO_MOTION = 1e-300
+
 # left, right, bottom, top: the axis of the normal and the direction into the wall
 SIDES = ((0, -1), (0, +1), (1, -1), (1, +1))
 
@@ -34,7 +37,9 @@ def hold_velocity(
             v[touched, axis] = 0.0
         elif kind == "coulomb":
             held = before[:, axis] == 0.0
+            stuck = held & (before[:, 1 - axis] == 0.0)
             v[touched & (held | (into * v[:, axis] > 0)), axis] = 0.0
+            v[touched & stuck, 1 - axis] = 0.0
     return v
 
 

@@ -275,9 +275,14 @@ def test_coulomb_wall_lets_go_what_it_did_not_hold() -> None:
     walls = [FREE[0], FREE[1], ("coulomb", 0.5, 0.0), FREE[3]]
     nodes = np.array([[0.0, 0.0], [H, 0.0]])
     leaving = np.array([[1.0, 0.3], [1.0, 0.3]])
-    before = np.array([[1.0, 0.0], [1.0, 0.1]])
-    got = hold_velocity(leaving, before, nodes, walls, H)
-    np.testing.assert_array_equal(got, [[1.0, 0.0], [1.0, 0.3]])
+    for before, seen in [
+        ([1.0, 0.1], [1.0, 0.3]),  # slid and rose
+        ([1.0, 0.0], [1.0, 0.0]),  # slid, held
+        ([0.0, 0.0], [0.0, 0.0]),  # stuck
+        ([0.0, 0.1], [1.0, 0.3]),  # rose
+    ]:
+        got = hold_velocity(leaving, np.array([before, before]), nodes, walls, H)
+        np.testing.assert_array_equal(got, [seen, seen])
 
 
 @pytest.mark.parametrize(

@@ -62,8 +62,9 @@ inline void start_nodes(const GridView& g, int row) {
         const double* moved = g.update + 4 * node;  // in the step before
         for_each_wall(g, column, row, v,
                       [&](Side side, double outward, double& normal, double& tangential) {
-                        const bool held = moved[side == bottom || side == top] == 0.0;
-                        constrain(g.kind[side], outward, held, normal, tangential);
+                        const int axis = side == bottom || side == top;
+                        constrain(g.kind[side], outward, moved[axis] == 0.0, moved[1 - axis] == 0.0,
+                                  normal, tangential);
                       });
         set(node, v);
       });
@@ -109,6 +110,7 @@ inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
                       [&](Side side, double outward, double& normal, double& tangential) {
                         react(g.kind[side], g.friction[side], outward, normal, tangential);
                       });
+        if (g.momentum[4 * node] == 0.0) v[0] = v[1] = kNoMotion;
         set(node, before, v);
       });
 }
