@@ -25,9 +25,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     prepare: Callable[[argparse.Namespace], Callable[[], None]] = options.prepare
     try:
         command = prepare(options)
-    except (ValueError, TypeError, FileExistsError) as refused:
+    except (ValueError, TypeError, OSError) as refused:
         print(f"gimpslope: {refused}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        return 130
     try:
         command()
     except (gs.Diverged, gs.NotSettledError, OSError) as failed:
@@ -45,6 +47,12 @@ def _run(options: argparse.Namespace) -> Callable[[], None]:
     figure_directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
     if Path(figure_directory).is_file():
         raise ValueError(f"--figures must be a directory, got the file {figure_directory!r}")
+    targets = [Path(p).absolute() for p in (options.output, options.summary, figure_directory) if p]
+    if len(set(targets)) < len(targets):
+        raise ValueError(
+            "--output, --summary and --figures must name different files, "
+            f"got {', '.join(str(target) for target in targets)}"
+        )
     simulation = Simulation(
         reference.soil_slope(options.reading, options.cell),
         reference.method(
@@ -79,8 +87,11 @@ def _check_file(option: str, path: str | None) -> None:
     """Refuse, before any work is done, a file that could not be written after it."""
     if path is None:
         return
-    if Path(path).is_dir() or not Path(path).absolute().parent.is_dir():
+    folder = Path(path).absolute().parent
+    if Path(path).is_dir() or not folder.is_dir():
         raise ValueError(f"{option} must be a file in a directory that exists, got {path!r}")
+    if not os.access(path if Path(path).exists() else folder, os.W_OK):
+        raise ValueError(f"{option} must be a file that may be written, got {path!r}")
 
 
 def _comparison(summary: dict[str, float | int | None], reading: str) -> str:

@@ -42,7 +42,7 @@ def shape_functions(
     half_length: npt.ArrayLike | None = None,
     *,
     cell: float,
-    origin: tuple[float, float] = (0.0, 0.0),
+    origin: npt.ArrayLike = (0.0, 0.0),
 ) -> ShapeFunctions:
     """Shape functions and gradients of points (Front. Earth Sci. 2022, 10:968250, eqs. 8, 15, 16).
 
@@ -66,7 +66,9 @@ def shape_functions(
         raise ValueError(f"half_length must be given with shape {shape!r}, got None")
     halves = np.zeros_like(points) if half_length is None else half_length
     halves = _check.array("half_length", halves, (len(points), 2))
-    return ShapeFunctions(*_core.shape_functions(shape, points, halves, cell, origin))
+    at = _check.array("origin", origin, (2,)).tolist()
+    side = _check.positive("cell", cell)
+    return ShapeFunctions(*_core.shape_functions(shape, points, halves, side, (at[0], at[1])))
 
 
 def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> ReturnedStress:

@@ -17,6 +17,7 @@ from tqdm import tqdm
 
 from . import _check
 from ._check import FloatArray
+from .io.atomic import uninterrupted
 from .io.hdf5 import FIELDS, STAGES, RunWriter
 from .run import Run
 from .solver import Diverged
@@ -86,6 +87,10 @@ class Recorder:
     ) -> None:
         if self._bar is not None:
             self._bar.close()
+        with uninterrupted():
+            self._end(kind, error)
+
+    def _end(self, kind: type[BaseException] | None, error: BaseException | None) -> None:
         if kind is None:
             self._finish("finished", self.detail)
         elif issubclass(kind, KeyboardInterrupt):
@@ -199,7 +204,7 @@ class Recorder:
 
     def _finish(self, status: str, detail: str, sound: bool = True) -> None:
         """Write the end; of a state that is not sound, torn in the middle of a step, nothing."""
-        if sound and self._rows_end != self._solver.steps:
+        if sound and self._solver.steps > self._rows_end:
             self._row()
         self._hand_over_rows()
         if sound and STAGES[self._stage] == "slide":

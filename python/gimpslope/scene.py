@@ -20,6 +20,7 @@ from .walls import Free, Walls
 
 _GRID_LINE = 1e-6
 _SLIVER = 1e-9
+_MOST_MATERIALS = 65_535
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,11 @@ class Points:
             raise TypeError(
                 f"material must be an array of whole numbers of shape ({n},), "
                 f"got {material.dtype} of shape {material.shape}"
+            )
+        if n and not 0 <= material.min() <= material.max() <= _MOST_MATERIALS:
+            raise ValueError(
+                f"material must be numbers in [0, {_MOST_MATERIALS}], "
+                f"got {material.min()} to {material.max()}"
             )
         material = material.astype(np.int32)
         material.setflags(write=False)

@@ -113,6 +113,7 @@ class Solver:
         let go.
         """
         _check.instance("scene", scene, Scene, "a Scene")
+        _check.flag("elastic", elastic)
         return cls(
             scene.points,
             [m.elastic() for m in scene.materials] if elastic else scene.materials,

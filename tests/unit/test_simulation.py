@@ -592,3 +592,43 @@ def test_killed_run_is_readable(tmp_path: Path) -> None:
     assert run.energy.time[-1] >= run.times[-1]
     assert run.summary["max_displacement_total"] > 0
     check_rows_without_gap(run)
+
+
+# What must not change the result
+
+
+@pytest.mark.parametrize("wall", [gs.Coulomb(0.0), gs.Coulomb(0.6)])
+def test_a_block_rests_on_a_coulomb_wall(wall: gs.Coulomb, tmp_path: Path) -> None:
+    """Rounding must not swing it up: its energy stays, to a millionth of what is stored in it, and
+    no point moves by more than a twentieth of its settlement."""
+    rock = gs.Elastic(density=1800, young=30e6, poisson=0.33)
+    stiffness = rock.bulk_modulus + 4 / 3 * rock.shear_modulus
+    block = gs.Outline(np.array([(0.0, 0.0), (3.0, 0.0), (3.0, 1.0), (0.0, 1.0)]))
+    walls = gs.Walls(gs.Free(), gs.Free(), wall, gs.Free())
+    scene = gs.Scene(block, rock, cell=0.1, walls=walls)
+    run = gs.simulate(scene, 6.0, output=tmp_path / "run.h5", progress=False)
+    total = run.energy.kinetic + run.energy.potential + run.energy.elastic
+    assert np.ptp(total) < 1e-6 * run.energy.potential[0]
+    assert run.energy.kinetic.max() < 1e-9 * run.energy.potential[0]
+    settlement = 1800 * 9.81 * 1.0**2 / (2 * stiffness)
+    assert abs(run.final.displacement[:, 1]).max() < 0.05 * settlement
+
+
+@pytest.mark.parametrize("method", [gs.Method(), gs.Method(viscosity=0.2)])
+def test_looking_more_often_changes_little(method: gs.Method, tmp_path: Path) -> None:
+    """Steps are shortened to end at a row. Their blend goes with them, so that 20 times as many
+    rows do not damp more; what is left is the error of the step itself, at most a few per cent."""
+    soil = gs.DruckerPrager(1800, 30e6, 0.33, friction=22, cohesion=1e3)
+    scene = gs.Scene(gs.Outline.slope(height=3, crest=1), soil, cell=0.25)
+    peaks = [
+        gs.simulate(
+            scene,
+            1.0,
+            method=method,
+            output=tmp_path / f"{interval}.h5",
+            energy_interval=interval,
+            progress=False,
+        ).energy.peak.value
+        for interval in (5e-3, 2.5e-4)
+    ]
+    assert peaks[1] == pytest.approx(peaks[0], rel=0.03)

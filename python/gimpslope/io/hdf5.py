@@ -11,7 +11,7 @@ Root attributes
 /energy
     one column a dataset, all of the same length, rows of all stages.
 /snapshots
-    the slide at chosen times, first at its start; axis 0 is time; 32-bit.
+    the slide at chosen times, first at its start; axis 0 is time; 32-bit but for the positions.
 /final
     the same fields once, 64-bit; attribute time.
 /trigger
@@ -399,8 +399,9 @@ def _create_snapshots(group: h5py.Group, count: int) -> None:
     time = Quantity("f8", (), "s", "time from the trigger")
     _create_growing(group, "time", time, chunk=_TIME_CHUNK)
     for name, quantity in FIELDS.items():
+        dtype = "f8" if name == "position" else "f4"  # displacements are differences of positions
         shape = (count, *quantity.shape)
-        _create_growing(group, name, quantity._replace(dtype="f4", shape=shape), chunk=1)
+        _create_growing(group, name, quantity._replace(dtype=dtype, shape=shape), chunk=1)
 
 
 def _create_growing(group: h5py.Group, name: str, quantity: Quantity, *, chunk: int) -> None:
