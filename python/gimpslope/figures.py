@@ -16,6 +16,7 @@ from matplotlib.colors import Colormap, ListedColormap, LogNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
+from . import _check
 from ._check import FloatArray
 from .energy import Energy
 from .run import PLASTIC_THRESHOLD, Run
@@ -294,7 +295,8 @@ def _map(
     run: Run, state: Snapshot, quantity: _Quantity, ax: Axes | None, largest: float | None
 ) -> Axes:
     ax = ax or _new_axes()
-    norm = quantity.norm(_largest(quantity, state) if largest is None else largest)
+    shown = _largest(quantity, state) if largest is None else _check.positive("largest", largest)
+    norm = quantity.norm(shown)
     _draw(ax, state, quantity.values(state), norm, quantity.cmap)
     _draw_outline(ax, run.scene.outline.vertices)
     _colour_bar([ax], norm, quantity.cmap, quantity.label)

@@ -17,6 +17,7 @@ from .walls import Free, Walls
 
 Diverged = _core.Diverged
 
+_MOST_STEPS = 2**62
 _ALL_FREE = Walls(Free(), Free(), Free(), Free())
 
 
@@ -141,7 +142,9 @@ class Solver:
             The error names step, time, point and the likely cause. The state is torn then, and no
             step can follow.
         """
-        self._core.advance(_check.whole("steps", steps, 0))
+        if _check.whole("steps", steps, 0) > _MOST_STEPS:
+            raise ValueError(f"steps must be at most {_MOST_STEPS}, got {steps}")
+        self._core.advance(steps)
 
     def advance_to(self, time: float) -> None:
         """Step until `time` (s). With a Courant number the last steps are shortened to end there;

@@ -132,3 +132,11 @@ def test_axes_are_made_when_none_are_given(run: Run, monkeypatch: pytest.MonkeyP
     from matplotlib import pyplot
 
     pyplot.close("all")
+
+
+def test_maps_share_a_scale_when_told(run: Run, ax: Axes) -> None:
+    run.plot_speed(1.0, ax, largest=7.5)
+    assert squares(ax).norm.vmax == 7.5
+    for refused in (float("nan"), -1.0):
+        with pytest.raises(ValueError, match=r"largest must be a finite number > 0, got"):
+            run.plot_speed(1.0, ax, largest=refused)
