@@ -86,7 +86,8 @@ def test_values_come_back_in_the_given_order(path: Path) -> None:
     for name, expected in synthetic.fields(end).items():
         np.testing.assert_array_equal(final[name], expected)
     np.testing.assert_array_equal(hdf5.read_points(path)["mass"], synthetic.POINTS.mass)
-    assert hdf5.read_material_names(path) == ("soil", "stone")
+    with h5py.File(path) as file:
+        assert list(file["points"].attrs["material_names"]) == ["soil", "stone"]
     assert hdf5.read_trigger(path) == {
         "energy_released": 12.5,
         "settling_time": 0.2,

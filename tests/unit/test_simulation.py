@@ -1,15 +1,9 @@
-"""The stages of a simulation, what they leave in the run file, and how a run may end."""
+"""The stages of a simulation, and what they leave in the run file."""
 
 from __future__ import annotations
 
 import json
-import signal
-import subprocess
-import sys
 import threading
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,16 +11,12 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
+from coarse_slope import METHOD, SLOPE, STAGES, recording, simulate
 
 import gimpslope as gs
 from gimpslope.io.hdf5 import ENERGY, FIELDS, POINTS
-from gimpslope.recording import Recorder
 from gimpslope.simulation import Simulation
-from gimpslope.studies import reference
 
-SLOPE = reference.soil_slope(cell=0.8)
-METHOD = reference.method()
-STAGES = gs.Stages(gs.Gravity(0.3), gs.Settling(ratio=1e-7), gs.Slide(duration=3.0))
 SUMMARY_KEYS = {
     "points",
     "steps",
@@ -58,27 +48,6 @@ def block(cell: float = 0.5) -> gs.Scene:
     corners = np.array([(0.0, 0.0), (WIDTH, 0.0), (WIDTH, HEIGHT), (0.0, HEIGHT)])
     walls = gs.Walls(gs.Roller(), gs.Roller(), gs.Roller(), gs.Free())
     return gs.Scene(gs.Outline(corners), ROCK, cell=cell, walls=walls)
-
-
-def simulate(path: Path, **options: Any) -> gs.Run:
-    """A run of the coarse slope, unless told otherwise."""
-    given = {"scene": SLOPE, "method": METHOD, "stages": STAGES, "progress": False} | options
-    return gs.simulate(output=path, **given)
-
-
-@contextmanager
-def recording(simulation: Simulation, path: Path) -> Iterator[Recorder]:
-    """A recorder with the defaults of `simulate`."""
-    with Recorder(
-        simulation,
-        path,
-        overwrite=False,
-        energy_interval=0.005,
-        snapshot_interval=0.2,
-        snapshot_times=(),
-        progress=False,
-    ) as recorder:
-        yield recorder
 
 
 def contents(path: Path) -> dict[str, Any]:
@@ -416,182 +385,6 @@ def test_simulations_in_threads_do_not_touch_each_other(finished: gs.Run, tmp_pa
         worker.join(timeout=20)
     expected = contents(finished.path)
     assert [contents(path) == expected for path in paths] == [True, True]
-
-
-# Refusals and runs that end otherwise
-
-
-def test_existing_output_is_refused(tmp_path: Path) -> None:
-    path = tmp_path / "run.h5"
-    path.write_text("precious")
-    with pytest.raises(FileExistsError, match="overwrite"):
-        simulate(path, duration=0.05)
-    assert path.read_text() == "precious"
-    assert simulate(path, duration=0.05, overwrite=True).status == "finished"
-
-
-@pytest.mark.parametrize(
-    ("options", "message"),
-    [
-        ({"duration": -1.0}, r"duration must be .* > 0, got -1"),
-        ({"duration": float("nan")}, r"duration must be .* > 0, got nan"),
-        ({"energy_interval": 0.0}, r"energy_interval must be .* > 0, got 0"),
-        ({"snapshot_interval": float("inf")}, r"snapshot_interval must be .* > 0, got inf"),
-        ({"snapshot_times": [-0.5]}, r"snapshot_times must be .* >= 0, got -0\.5"),
-        ({"progress": "no"}, r"progress must be True or False, got 'no'"),
-        ({"method": gs.Method(time_step=1.0)}, r"time_step must be at most 0\.00\d+ s.*got 1"),
-        ({"snapshot_times": 5.0}, "snapshot_times must be"),
-        ({"overwrite": "no"}, "overwrite must be"),
-        ({"scene": "slope"}, "scene must be"),
-        ({"method": "ugimp"}, "method must be"),
-        ({"stages": 3}, "stages must be"),
-        ({"method": gs.Method(viscosity=1e4)}, "viscosity must be"),
-        ({"method": gs.Method(relaxation_time=1e-6)}, "relaxation_time must be"),
-    ],
-    ids=lambda value: "-".join(value) if isinstance(value, dict) else "",
-)
-def test_refused_before_anything_is_written(
-    options: dict[str, Any], message: str, tmp_path: Path
-) -> None:
-    with pytest.raises((TypeError, ValueError), match=message):
-        simulate(tmp_path / "run.h5", **options)
-    assert not (tmp_path / "run.h5").exists()
-
-
-def test_a_time_step_that_was_accepted_stays_accepted(tmp_path: Path) -> None:
-    """The settled slope is not quite as dense everywhere: that is no reason to refuse it then."""
-    limit = gs.Solver.of(SLOPE).stable_time_step
-    method = gs.Method(viscosity=0.5625, time_step=0.9999 * limit)
-    assert simulate(tmp_path / "run.h5", method=method, duration=0.1).status == "finished"
-
-
-def test_fixed_step_is_kept(tmp_path: Path) -> None:
-    run = simulate(tmp_path / "run.h5", method=gs.Method(time_step=2e-3), duration=0.1)
-    np.testing.assert_allclose(run.energy.time, 2e-3 * run.energy.step, rtol=1e-9)
-    assert 0.1 * (1 - 1e-9) <= run.final.time < 0.1 + 2e-3
-
-
-def test_diverging_run_says_where_and_why(tmp_path: Path) -> None:
-    limit = gs.Solver.of(SLOPE).stable_time_step
-    method = gs.Method(time_step=8 * limit, allow_unstable=True)
-    with pytest.raises(gs.Diverged) as caught:
-        simulate(tmp_path / "run.h5", method=method)
-    error, message = caught.value, str(caught.value)
-    assert 0 <= error.point < SLOPE.n_points and error.step > 0
-    assert error.time == pytest.approx(8 * limit * (error.step - 1))
-    assert f"step {error.step} from t = " in message and f"point {error.point} at" in message
-    assert "likely cause: the time step of" in message and "above the stable limit" in message
-    run = gs.open(tmp_path / "run.h5")
-    assert run.status == "failed" and run.status_detail == f"Diverged: {message}"
-    rows = run.energy.stage("gravity")
-    assert len(rows) > 0 and error.time - rows.time[-1] <= max(0.005, 8 * limit)
-
-
-def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
-    # A Courant number would follow the speed: the step is fixed.
-    simulation = Simulation(SLOPE, reference.method(time_step=2e-3), STAGES)
-    with pytest.raises(gs.Diverged), recording(simulation, tmp_path / "run.h5") as recorder:
-        simulation.load(recorder)
-        simulation.settle(recorder)
-        simulation.release(recorder)
-        velocity = simulation.solver.velocity
-        velocity[7] = (0.0, 1e9)
-        simulation.solver.velocity = velocity
-        simulation.slide(recorder)
-    run = gs.open(tmp_path / "run.h5")
-    assert run.status == "failed" and run.trigger
-    assert len(run.final.position) == SLOPE.n_points
-    assert len(run.energy) == 1 and run.times.tolist() == [0.0]
-
-
-@contextmanager
-def command(path: Path) -> Iterator[subprocess.Popen[bytes]]:
-    """A run by the command line that would last for minutes."""
-    words = ["run", "soil", "--cell", "0.1", "--output", str(path), "--quiet"]
-    if path.stem == "slide":
-        words += ["--cell", "0.2", "--duration", "1000"]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "gimpslope.cli", *words],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        cwd=path.parent,
-    )
-    try:
-        yield process
-    finally:
-        process.kill()
-        process.communicate()
-
-
-def wait_for(path: Path, group: str, process: subprocess.Popen[bytes]) -> None:
-    """Wait until the running process has written that to its run file."""
-    deadline = time.monotonic() + 25
-    while process.poll() is None and time.monotonic() < deadline:
-        if path.exists() and path.stat().st_size > 0:
-            with h5py.File(path, "r", locking=False) as file:
-                if group in file and (group != "snapshots" or len(file["snapshots/time"]) > 2):
-                    return
-        time.sleep(0.02)
-    raise AssertionError(f"{group} was not written; exit code {process.poll()}")
-
-
-def check_rows_without_gap(run: gs.Run) -> None:
-    for stage in ("gravity", "settling", "slide"):
-        steps = np.diff(run.energy.stage(stage).time)
-        assert ((steps > 0) & (steps < 0.005 * (1 + 1e-9))).all()
-
-
-def test_interrupted_slide_leaves_all_that_was_computed(tmp_path: Path) -> None:
-    path = tmp_path / "slide.h5"
-    with command(path) as process:
-        wait_for(path, "snapshots", process)
-        time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
-        start = time.monotonic()
-        _, errors = process.communicate(timeout=10)
-        assert time.monotonic() - start < 2.0
-    assert process.returncode == 130
-    assert b"interrupted" in errors and b"Traceback" not in errors
-    run = gs.open(path)
-    assert run.status == "interrupted" and "stopped by the user" in run.status_detail
-    check_rows_without_gap(run)
-    with h5py.File(path, "r") as file:
-        final = file["final"].attrs["time"]
-    assert final == run.final.time
-    assert run.times[-1] <= run.energy.time[-1] <= run.final.time
-    assert run.final.time <= run.energy.time[-1] + 0.005 * (1 + 1e-9)
-    assert run.summary["simulated_time"] == run.energy.time[-1]
-    assert run.summary["point_steps_per_second"] > 0
-
-
-def test_interrupted_while_gravity_grows(tmp_path: Path) -> None:
-    path = tmp_path / "gravity.h5"
-    with command(path) as process:
-        wait_for(path, "points", process)
-        time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
-        start = time.monotonic()
-        _, errors = process.communicate(timeout=10)
-        assert time.monotonic() - start < 2.0
-    assert process.returncode == 130 and b"Traceback" not in errors
-    run = gs.open(path)
-    assert run.status == "interrupted"
-    assert len(run.energy.stage("gravity")) > 1 and len(run.energy) == 0
-    check_rows_without_gap(run)
-
-
-def test_killed_run_is_readable(tmp_path: Path) -> None:
-    path = tmp_path / "slide.h5"
-    with command(path) as process:
-        wait_for(path, "snapshots", process)
-        process.kill()
-        process.communicate(timeout=10)
-    run = gs.open(path)
-    assert run.status == "running"
-    assert len(run.times) > 2 and run.final.time == run.times[-1]
-    assert run.energy.time[-1] >= run.times[-1]
-    assert run.summary["max_displacement_total"] > 0
-    check_rows_without_gap(run)
 
 
 # What must not change the result

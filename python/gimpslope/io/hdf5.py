@@ -291,14 +291,6 @@ def read_points(path: str | PathLike[str]) -> Arrays:
 
 
 @_patient
-def read_material_names(path: str | PathLike[str]) -> tuple[str, ...]:
-    """The names that `material` of the points counts."""
-    with _opened(path) as file:
-        names = file["points"].attrs["material_names"] if "points" in file else ()
-        return tuple(str(name) for name in names)
-
-
-@_patient
 def read_energy(path: str | PathLike[str]) -> Arrays:
     """The energy rows of all stages, one array (k,) for every name in `ENERGY`."""
     with _opened(path) as file:
