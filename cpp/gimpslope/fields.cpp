@@ -77,13 +77,16 @@ FieldView Solver::field(const std::string& name) {
   if (name == "volume") return {p.volume.data(), 1, 1, 1};
   if (name == "mass") return {p.mass.data(), 1, 1, 1};
   if (name == "plastic_strain") return {p.plastic_strain.data(), 1, 1, 1};
+  if (name == "body_force" && p.body_force.empty()) return {&no_force_, 0, 0, 2};
+  if (name == "body_force") return {p.body_force.data(), 2, 1, 2};
   if (name == "half_length" && !p.half_length.empty()) return {p.half_length.data(), 2, 1, 2};
   if (name == "half_length" && method_.shape != ShapeKind::linear) return {&half_length_, 0, 0, 2};
   if (name == "deformation_gradient" && !p.deformation.empty())
     return {p.deformation.data(), 4, 1, 4};
   require(false, "field", name,
-          "one of position, velocity, stress, volume, mass, plastic_strain, half_length (not with "
-          "shape linear), deformation_gradient (with cpgimp stretch or deformation_diagonal)");
+          "one of position, velocity, stress, volume, mass, plastic_strain, body_force, "
+          "half_length (not with shape linear), deformation_gradient (with cpgimp stretch or "
+          "deformation_diagonal)");
   return {};
 }
 
@@ -99,17 +102,23 @@ std::vector<double> Solver::values(const std::string& name) {
 
 void Solver::set_values(const std::string& name, std::span<const double> values) {
   const bool settable = name == "position" || name == "velocity" || name == "stress" ||
-                        name == "volume" || name == "plastic_strain";
-  require(settable, "field", name, "one of position, velocity, stress, volume, plastic_strain");
-  const FieldView f = field(name);
-  check_values(values, static_cast<std::size_t>(f.components) * points_.size, name == "volume",
-               name.c_str());
+                        name == "volume" || name == "plastic_strain" || name == "body_force";
+  require(settable, "field", name,
+          "one of position, velocity, stress, volume, plastic_strain, body_force");
+  check_values(values, static_cast<std::size_t>(field(name).components) * points_.size,
+               name == "volume", name.c_str());
   if (name == "position") grid_.check_reach(values);
+  if (name == "body_force" && points_.body_force.empty()) {
+    points_.body_force.assign(2 * static_cast<std::size_t>(points_.size), 0.0);
+    grid_.keep_body_forces();
+    sorted_ = false;
+  }
+  const FieldView f = field(name);
   for (int k = 0; k < points_.size; ++k)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
-  nodes_ready_ = speeds_known_ = false;
+  if (name != "body_force") nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;
 }
 

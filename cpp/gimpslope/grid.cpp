@@ -77,6 +77,7 @@ void Grid::fit(Cell low, Cell high) {
   active_.assign(rows, {columns_, 0});
   for (Buffer<double>* field : {&momentum_, &velocity_, &force_})
     field->assign(4 * columns * rows, 0.0);
+  if (keeps_body_forces_) body_.assign(4 * columns * rows, 0.0);
 }
 
 void Grid::keep(Buffer<double>& update, Cell low, Cell high) const {
@@ -110,6 +111,7 @@ GridView Grid::view() {
                 velocity_.data(),
                 force_.data(),
                 update_.data(),
+                body_.empty() ? nullptr : body_.data(),
                 {},
                 {},
                 {}};
@@ -124,7 +126,7 @@ GridView Grid::view() {
 
 std::int64_t Grid::bytes() const {
   std::int64_t total = active_.capacity() * sizeof(NodeRange);
-  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_})
+  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_, &body_})
     total += sizeof(double) * field->capacity();
   return total;
 }

@@ -33,6 +33,9 @@ class Grid {
   /// last motion of its nodes, by which walls know what they hold.
   void fit(Cell low, Cell high);
 
+  /// Makes room for body forces at the nodes, from the next `fit` on.
+  void keep_body_forces() { keeps_body_forces_ = true; }
+
   /// Declares the nodes `columns` of the window's `row` active, beside those that are already.
   void activate(int row, NodeRange columns);
 
@@ -50,7 +53,8 @@ class Grid {
   Cell low_{0, 0};
   int columns_ = 0, rows_ = 0;
   std::vector<NodeRange> active_;
-  Buffer<double> momentum_, velocity_, force_, update_;
+  bool keeps_body_forces_ = false;
+  Buffer<double> momentum_, velocity_, force_, update_, body_;
 };
 
 }  // namespace gimpslope

@@ -39,7 +39,7 @@ void Points::reorder(const std::vector<std::int32_t>& order) {
   for (int c = 0; c < 4; ++c) permute<1>(stress.data() + c * size, order, scratch_);
   for (Buffer<double>* scalar : {&volume, &mass, &plastic_strain})
     permute<1>(scalar->data(), order, scratch_);
-  for (Buffer<double>* pair : {&half_length, &domain_reference})
+  for (Buffer<double>* pair : {&half_length, &domain_reference, &body_force})
     if (!pair->empty()) permute<2>(pair->data(), order, scratch_);
   if (!deformation.empty()) permute<4>(deformation.data(), order, scratch_);
   permute<1>(material.data(), order, integer_scratch_);
@@ -60,14 +60,15 @@ PointsView Points::view() {
           mass.data(),
           optional(half_length),
           optional(domain_reference),
-          optional(deformation)};
+          optional(deformation),
+          optional(body_force)};
 }
 
 std::int64_t Points::bytes() const {
   std::int64_t total = sizeof(std::int32_t) *
                        (material.capacity() + number.capacity() + integer_scratch_.capacity());
   for (const Buffer<double>* b : {&motion, &stress, &volume, &mass, &plastic_strain, &half_length,
-                                  &domain_reference, &deformation, &scratch_})
+                                  &domain_reference, &deformation, &body_force, &scratch_})
     total += sizeof(double) * b->capacity();
   return total;
 }

@@ -21,6 +21,7 @@ struct Points {
   Buffer<double> half_length;       // x, y
   Buffer<double> domain_reference;  // x, y
   Buffer<double> deformation;       // xx, xy, yx, yy
+  Buffer<double> body_force;        // x, y, m/s2; empty until one is given
   Buffer<std::int32_t> material;
   Buffer<std::int32_t> number;  // place of the point in the order in which it was given
 

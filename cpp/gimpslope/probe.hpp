@@ -29,4 +29,9 @@ ShapeValues shape_functions(ShapeKind kind, std::span<const double> position,
 void return_mapping(const Material& material, std::span<double> stress,
                     std::span<double> plastic_strain);
 
+/// Takes stresses through `steps` steps of dt under velocity gradients {xx, xy, yx, yy}, 1/s, that
+/// stay as they are: exact rotation, elastic trial, return (paper eq. 24-25), as in a sweep.
+void update_stress(const Material& material, std::span<const double> velocity_gradient, double dt,
+                   std::int64_t steps, std::span<double> stress, std::span<double> plastic_strain);
+
 }  // namespace gimpslope

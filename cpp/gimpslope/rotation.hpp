@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "instruction_set.hpp"
+#include "material/elastic.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -45,6 +46,13 @@ inline void rotation(int n, const double* angle, double* cosine, double* sine) {
     cosine[k] = std::cos(angle[k]);
     sine[k] = std::sin(angle[k]);
   }
+}
+
+/// A stress turned with the material, given cosine and sine of twice the angle.
+inline Stress turned(const Stress& s, double cosine, double sine) {
+  const double middle = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
+  const double normal = half * cosine - s.xy * sine;
+  return {middle + normal, middle - normal, s.zz, half * sine + s.xy * cosine};
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

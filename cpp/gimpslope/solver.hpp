@@ -62,7 +62,7 @@ class Solver {
   Energies energies() const;
 
   /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,
-  /// half_length, and deformation_gradient (xx, xy, yx, yy) where the method keeps it.
+  /// body_force, half_length, and deformation_gradient (xx, xy, yx, yy) where the method keeps it.
   FieldView field(const std::string& name);
   std::vector<double> values(const std::string& name);  // in the order the points were given
   void set_values(const std::string& name, std::span<const double> values);
@@ -121,7 +121,8 @@ class Solver {
   std::string failure_;          // why no step can follow
   std::int64_t steps_ = 0;
   double last_kinetic_ = 0.0;
-  double travel_ = 0.0;  // since the last sort, at most, cells
+  double no_force_ = 0.0;  // body force of all points where none was given
+  double travel_ = 0.0;    // since the last sort, at most, cells
   int steps_since_sort_ = 0;
   bool sorted_ = false;
   bool nodes_ready_ = false;  // mass and momentum at the nodes are those of the points

@@ -26,13 +26,15 @@ struct Slab {
 };
 
 /// One value a point, in storage order; motion holds {x, y, vx, vy}, deformation the rows of F,
-/// half_length and domain_reference {x, y}. The last three are null where the method needs none.
+/// half_length, domain_reference and body_force (a unit of mass) {x, y}. The last four are null
+/// where there is no need of them.
 struct PointsView {
   double* motion;
   double *stress_xx, *stress_yy, *stress_zz, *stress_xy;
   double *volume, *plastic_strain;
   const double* mass;
   double *half_length, *domain_reference, *deformation;
+  const double* body_force;
 };
 
 /// Active nodes of a row: [begin, end).
@@ -43,14 +45,14 @@ struct NodeRange {
 /// Four doubles a node. `momentum` {m, m, m vx, m vy}, `velocity` {vx, vx, vy, vy} and `force`
 /// {fx, fx, fy, fy} (the sum of each pair is the force) are laid out so that one multiplication by
 /// {S,x S S,x S} serves both components; `update` {dt vx, dt vy, bx, by} is what a point adds to
-/// its motion.
+/// its motion. `body` {bx, by, -, -}, the points' body forces, is null until there are any.
 struct GridView {
   double cell;
   double left, bottom;  // coordinates of node 0
   int stride;           // nodes from one row to the next
   int rows;
   const NodeRange* active;  // of each row
-  double *momentum, *velocity, *force, *update;
+  double *momentum, *velocity, *force, *update, *body;
   WallKind kind[4];
   double friction[4];
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall

@@ -40,6 +40,20 @@ py::tuple return_stress(const Material& material, const Doubles& stress) {
   return py::make_tuple(returned, plastic_strain);
 }
 
+py::tuple deform_stress(const Material& material, const Doubles& stress,
+                        const Doubles& velocity_gradient, double time_step, std::int64_t steps) {
+  const py::ssize_t n = rows_of(stress);
+  values_of(stress, "stress", n, 4);
+  const auto gradients = values_of(velocity_gradient, "velocity_gradient", n, 4);
+  py::array_t<double> updated({n, py::ssize_t{4}}), plastic_strain(n);
+  std::copy_n(stress.data(), 4 * n, updated.mutable_data());
+  std::fill_n(plastic_strain.mutable_data(), n, 0.0);
+  const auto count = static_cast<std::size_t>(n);
+  update_stress(material, gradients, time_step, steps, {updated.mutable_data(), 4 * count},
+                {plastic_strain.mutable_data(), count});
+  return py::make_tuple(updated, plastic_strain);
+}
+
 }  // namespace
 
 void bind_kernel(py::module_& m) {
@@ -52,4 +66,6 @@ void bind_kernel(py::module_& m) {
   m.def("shape_functions", &evaluate_shape, py::arg("shape"), py::arg("position"),
         py::arg("half_length"), py::arg("cell"), py::arg("origin"));
   m.def("return_mapping", &return_stress, py::arg("material"), py::arg("stress"));
+  m.def("update_stress", &deform_stress, py::arg("material"), py::arg("stress"),
+        py::arg("velocity_gradient"), py::arg("time_step"), py::arg("steps") = 1);
 }

@@ -104,3 +104,10 @@ def shape_functions(
 def return_mapping(
     material: Material, stress: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def update_stress(
+    material: Material,
+    stress: ArrayLike,
+    velocity_gradient: ArrayLike,
+    time_step: float,
+    steps: int = ...,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _check, _core
 from ._check import FloatArray
-from .materials import DruckerPrager
+from .materials import DruckerPrager, Material
 from .method import Shape
 
 
@@ -28,9 +28,9 @@ class ShapeFunctions(NamedTuple):
     gradients: FloatArray
 
 
-class ReturnedStress(NamedTuple):
-    """Stresses on or within the yield surface, Pa, shape (n, 4), and the equivalent plastic strain
-    of the return, shape (n,)."""
+class NewStress(NamedTuple):
+    """Stresses xx, yy, zz, xy, Pa, shape (n, 4), and the equivalent plastic strain added on the
+    way, shape (n,)."""
 
     stress: FloatArray
     plastic_strain: FloatArray
@@ -71,7 +71,7 @@ def shape_functions(
     return ShapeFunctions(*_core.shape_functions(shape, points, halves, side, (at[0], at[1])))
 
 
-def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> ReturnedStress:
+def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> NewStress:
     """Trial stresses returned to the yield surface of a material.
 
     On the cone the return follows the flow rule, beyond the tension limit it goes to the plane of
@@ -89,7 +89,45 @@ def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> ReturnedSt
     """
     _check.instance("material", material, DruckerPrager, "a DruckerPrager")
     trial = _check.array("stress", stress, ("n", 4))
-    return ReturnedStress(*_core.return_mapping(material.to_core(), trial))
+    return NewStress(*_core.return_mapping(material.to_core(), trial))
+
+
+def update_stress(
+    material: Material,
+    stress: npt.ArrayLike,
+    velocity_gradient: npt.ArrayLike,
+    time_step: float,
+    steps: int = 1,
+) -> NewStress:
+    """Stresses of points that are driven through a given motion: each step turns the stress by the
+    exact rotation, adds the elastic increment of the Jaumann rate, and returns it to the yield
+    surface (Front. Earth Sci. 2022, 10:968250, eqs. 24-25).
+
+    Parameters
+    ----------
+    material : the same for all points
+    stress : at the start, xx, yy, zz, xy, tension positive, Pa, shape (n, 4)
+    velocity_gradient : dv_i/dx_j at [:, i, j], 1/s, the same in every step, shape (n, 2, 2)
+    time_step : s, > 0
+    steps : number of steps, >= 0
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is of the wrong type, shape or range.
+    """
+    _check.instance("material", material, Material, "a material")
+    start = _check.array("stress", stress, ("n", 4))
+    gradient = _check.array("velocity_gradient", velocity_gradient, (len(start), 2, 2))
+    return NewStress(
+        *_core.update_stress(
+            material.to_core(),
+            start,
+            gradient.reshape(-1, 4),
+            _check.positive("time_step", time_step),
+            _check.whole("steps", steps, 0),
+        )
+    )
 
 
 def instruction_sets() -> list[str]:

@@ -185,7 +185,7 @@ class Solver:
         long as it lives, and the order changes whenever the kernel sorts its points. `numbers`
         says which points they are.
 
-        Names: position, velocity (n, 2); stress (n, 4); volume, mass, plastic_strain (n,);
+        Names: position, velocity, body_force (n, 2); stress (n, 4); volume, mass, plastic_strain (n,);
         half_length (n, 2), not with shape "linear"; deformation_gradient (n, 4) as xx, xy, yx, yy,
         with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
         """
@@ -224,9 +224,26 @@ class Solver:
         self._set("stress", values, 4)
 
     @property
+    def body_force(self) -> FloatArray:
+        """Force a unit of mass at each point beside gravity, N/kg = m/s2, shape (n, 2).
+
+        It stays as it is until it is set anew, also while the points move; set before each step, it
+        may follow any law in space and time. Zero unless set.
+        """
+        return self._core.get("body_force")
+
+    @body_force.setter
+    def body_force(self, values: npt.ArrayLike) -> None:
+        self._set("body_force", values, 2)
+
+    @property
     def volume(self) -> FloatArray:
-        """Area in the plane, m2, shape (n,)."""
+        """Area in the plane, m2, > 0, shape (n,)."""
         return self._core.get("volume")
+
+    @volume.setter
+    def volume(self, values: npt.ArrayLike) -> None:
+        self._core.set("volume", _check.array("volume", values, (len(self),)))
 
     @property
     def mass(self) -> FloatArray:
@@ -244,6 +261,10 @@ class Solver:
         """Equivalent plastic strain, the sum of sqrt(2/3 de_p:de_p) of the deviatoric increments,
         shape (n,)."""
         return self._core.get("plastic_strain")
+
+    @plastic_strain.setter
+    def plastic_strain(self, values: npt.ArrayLike) -> None:
+        self._core.set("plastic_strain", _check.array("plastic_strain", values, (len(self),)))
 
     @property
     def half_length(self) -> FloatArray:

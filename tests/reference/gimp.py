@@ -23,7 +23,7 @@ class Reference:
     """Plane-strain material points on a fixed grid; arguments as for the compiled solver.
 
     The state is in plain attributes that may be read and assigned: position, velocity (n, 2);
-    stress (n, 4) as xx, yy, zz, xy; mass, volume, plastic_strain (n,); half_length (n, 2);
+    stress (n, 4) as xx, yy, zz, xy; body_force (n, 2), m/s2; mass, volume, plastic_strain (n,); half_length (n, 2);
     deformation_gradient (n, 2, 2); materials; time. The grid reaches `margin` cells beyond the
     first positions; a point that leaves it is an error.
     """
@@ -65,6 +65,7 @@ class Reference:
         n = len(self.position)
         self.stress = np.zeros((n, 4))
         self.plastic_strain = np.zeros(n)
+        self.body_force = np.zeros((n, 2))
         self.deformation_gradient = np.tile(np.eye(2), (n, 1, 1))
         self.first_half_length = self.half_length.copy()
         self.first_volume = self.volume.copy()
@@ -146,6 +147,7 @@ class Reference:
         force = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
         share = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
         force += mass[:, None] * self.gravity * share
+        force += s.T @ (self.mass[:, None] * self.body_force)
         force -= self.local_damping * np.abs(force) * np.sign(v)
 
         momentum = hold_momentum(momentum + dt * force, self.nodes, self.walls, self.cell)

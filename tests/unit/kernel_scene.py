@@ -75,8 +75,9 @@ def solver(scene: Settings, **options: Any) -> _core.Solver:
     unstable = scene.get("allow_unstable", False)
     given = {"walls": [FREE] * 4, "allow_unstable": unstable} | arguments(scene) | options
     result = _core.Solver(materials=materials, **given)
-    if "stress" in scene:
-        result.set("stress", scene["stress"])
+    for name in ("stress", "body_force"):
+        if name in scene:
+            result.set(name, scene[name])
     result.set_gravity(*scene.get("gravity", (0.0, 0.0, 0.0)))
     result.set_damping(*scene.get("damping", (0.0, False)))
     return result

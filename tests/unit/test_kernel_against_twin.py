@@ -107,6 +107,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "gravity_ramp": ({"gravity": (0.0, -9.81, 0.1)}, "base"),
     "horizontal_gravity": ({"gravity": (3.0, -9.81, 0.0)}, "base"),
     "horizontal_gravity_ramp": ({"gravity": (3.0, -9.81, 1.0)}, "horizontal_gravity"),
+    "body_force": ({"body_force": 5.0 * RANDOM.standard_normal((N, 2))}, "base"),
     "local_damping": ({"damping": (0.3, False)}, "base"),
     "kinetic_damping": ({"damping": (0.0, True)}, "base"),
     "both_dampings": ({"damping": (0.3, True)}, "kinetic_damping"),
@@ -165,6 +166,8 @@ def twin(scene: dict[str, Any]) -> State:
     materials = [Material(**given) for given in scene["materials"]]
     plain = Reference(materials=materials, margin=scene.get("margin", 8), **arguments(scene))
     plain.stress = np.array(scene["stress"])
+    if "body_force" in scene:
+        plain.body_force = scene["body_force"]
     plain.set_gravity(*scene["gravity"])
     plain.set_damping(*scene["damping"])
     plain.advance(scene["steps"])

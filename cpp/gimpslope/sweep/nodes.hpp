@@ -80,6 +80,10 @@ inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
     const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
     double fx = f[0] + f[1] + m[0] * step.gravity_x;
     double fy = f[2] + f[3] + m[0] * step.gravity_y;
+    if (g.body != nullptr) {
+      fx += g.body[4 * node];
+      fy += g.body[4 * node + 1];
+    }
     const auto sign = [](double x) {
       return (x > 0.0 ? 1.0 : 0.0) - (x < 0.0 ? 1.0 : 0.0);
     };
@@ -95,6 +99,7 @@ inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
     quad(g.update + 4 * node) =
         Quad(step.dt * v[0], step.dt * v[1], v[0] - flip * before[0], v[1] - flip * before[1]);
     quad(g.momentum + 4 * node).setZero();
+    if (g.body != nullptr) quad(g.body + 4 * node).setZero();
   };
   for_each_node(
       g, row,

@@ -58,6 +58,22 @@ void scatter_momentum(const View& view, int begin, int n, const Weights<Shape>& 
   }
 }
 
+/// Body forces at the nodes: sum of S m b (paper eq. 12, the first term).
+template <class Shape>
+void scatter_body_forces(const View& view, int begin, int n, const Weights<Shape>& weights) {
+  const double* force = view.points.body_force + 2 * begin;
+  const double* mass = view.points.mass + begin;
+  NodeSums<Shape> nodes(view.grid.body, view.grid.stride);
+  for (int k = 0; k < n; ++k) {
+    const Quad point(mass[k] * force[2 * k], mass[k] * force[2 * k + 1], 0.0, 0.0);
+    nodes.move_to(weights.first[k]);
+    for (int j = 0; j < Shape::nodes; ++j) {
+      const Quad row = point * weights.y[j][k];
+      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.x[i][k]);
+    }
+  }
+}
+
 /// Internal forces at the nodes (paper eq. 11): -V sigma grad S, with forces[k] = -V / h
 /// {xx, xy, xy, yy}.
 template <class Shape>

@@ -83,9 +83,7 @@ void update_stress(const View& view, int begin, int n, const Constants& law, con
   const Constants constants = law;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
-    const double middle = 0.5 * (xx[k] + yy[k]), half = 0.5 * (xx[k] - yy[k]);
-    const double turned = half * s.cosine[k] - xy[k] * s.sine[k];
-    Stress stress{middle + turned, middle - turned, zz[k], half * s.sine[k] + xy[k] * s.cosine[k]};
+    Stress stress = turned({xx[k], yy[k], zz[k], xy[k]}, s.cosine[k], s.sine[k]);
     double strain = plastic_strain[k];
     update(constants, stress, {s.xx[k], s.yy[k], s.xy[k]}, strain);
     xx[k] = stress.xx;
@@ -134,6 +132,7 @@ void stress_block(const View& view, const StepInput& input, const Block& block) 
   }
   point_forces(view, begin, n, strains.gradient);
   scatter_forces(view, n, weights, strains.gradient);
+  if (view.points.body_force != nullptr) scatter_body_forces(view, begin, n, weights);
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
