@@ -10,12 +10,9 @@
 namespace gimpslope {
 namespace {
 
-/// Elastic energy per volume, J/m3.
-double strain_energy(const Material& m, const Stress& s) {
-  const double mean = (s.xx + s.yy + s.zz) / 3.0;
-  const double xx = s.xx - mean, yy = s.yy - mean, zz = s.zz - mean;
-  const double j2 = 0.5 * (xx * xx + yy * yy + zz * zz) + s.xy * s.xy;
-  return mean * mean / (2.0 * m.bulk_modulus()) + j2 / (2.0 * m.shear_modulus());
+/// Elastic energy a volume, J/m3.
+double strain_energy(const Law& law, const Stress& s) {
+  return 0.5 * product(compliance_of(law.drucker_prager.elastic), s, s);
 }
 
 Stress stress_of(const Points& p, int k) {
@@ -35,7 +32,7 @@ Energies Solver::energies() const {
     sum.kinetic += 0.5 * points_.mass[k] * square;
     sum.potential -= points_.mass[k] * (gravity_.x * m[0] + gravity_.y * m[1]);
     sum.elastic +=
-        points_.volume[k] * strain_energy(materials_[points_.material[k]], stress_of(points_, k));
+        points_.volume[k] * strain_energy(laws_[points_.material[k]], stress_of(points_, k));
   }
   sum.max_speed = std::sqrt(fastest);
   return sum;
@@ -63,10 +60,16 @@ double Solver::release_stress() {
     s[points_.size] = after.yy;
     s[2 * points_.size] = after.zz;
     s[3 * points_.size] = after.xy;
-    released += points_.volume[k] * (strain_energy(materials_[material], before) -
-                                     strain_energy(materials_[material], after));
+    released += points_.volume[k] *
+                (strain_energy(laws_[material], before) - strain_energy(laws_[material], after));
   }
+  ledger_.plastic += released;
   return released;
+}
+
+Ledger Solver::ledger() const {
+  require(method_.ledger, "ledger", "a method without one", "asked of a method with a ledger");
+  return ledger_;
 }
 
 FieldView Solver::field(const std::string& name) {

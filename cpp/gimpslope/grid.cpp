@@ -78,6 +78,7 @@ void Grid::fit(Cell low, Cell high) {
   for (Buffer<double>* field : {&momentum_, &velocity_, &force_})
     field->assign(4 * columns * rows, 0.0);
   if (keeps_body_forces_) body_.assign(4 * columns * rows, 0.0);
+  if (keeps_cells_) cells_.assign(4 * columns * rows, 0.0);
 }
 
 void Grid::keep(Buffer<double>& update, Cell low, Cell high) const {
@@ -112,6 +113,7 @@ GridView Grid::view() {
                 force_.data(),
                 update_.data(),
                 body_.empty() ? nullptr : body_.data(),
+                cells_.empty() ? nullptr : cells_.data(),
                 {},
                 {},
                 {}};
@@ -126,7 +128,7 @@ GridView Grid::view() {
 
 std::int64_t Grid::bytes() const {
   std::int64_t total = active_.capacity() * sizeof(NodeRange);
-  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_, &body_})
+  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_, &body_, &cells_})
     total += sizeof(double) * field->capacity();
   return total;
 }

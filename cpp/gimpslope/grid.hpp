@@ -25,6 +25,7 @@ class Grid {
   double cell() const { return cell_; }
   double x() const { return x_; }
   double y() const { return y_; }
+  int rows() const { return rows_; }
 
   /// Refuses positions {x, y} that no window can hold.
   void check_reach(std::span<const double> position) const;
@@ -33,8 +34,9 @@ class Grid {
   /// last motion of its nodes, by which walls know what they hold.
   void fit(Cell low, Cell high);
 
-  /// Makes room for body forces at the nodes, from the next `fit` on.
+  /// Makes room for body forces at the nodes, or for sums over cells, from the next `fit` on.
   void keep_body_forces() { keeps_body_forces_ = true; }
+  void keep_cells() { keeps_cells_ = true; }
 
   /// Declares the nodes `columns` of the window's `row` active, beside those that are already.
   void activate(int row, NodeRange columns);
@@ -53,8 +55,8 @@ class Grid {
   Cell low_{0, 0};
   int columns_ = 0, rows_ = 0;
   std::vector<NodeRange> active_;
-  bool keeps_body_forces_ = false;
-  Buffer<double> momentum_, velocity_, force_, update_, body_;
+  bool keeps_body_forces_ = false, keeps_cells_ = false;
+  Buffer<double> momentum_, velocity_, force_, update_, body_, cells_;
 };
 
 }  // namespace gimpslope

@@ -12,6 +12,10 @@ enum class DomainUpdate { none, jacobian, stretch, deformation_diagonal };
 /// V *= 1 + tr(d) dt (paper eq. 23), or V *= exp(tr(d) dt).
 enum class VolumeUpdate { linear, exponential };
 
+/// Volume strain of a point: its own, or the mean of the points in its cell, against the locking of
+/// nearly incompressible motion.
+enum class VolumetricStrain { point, cell_average };
+
 /// Share of PIC in the velocity update (paper eq. 26: 0 is FLIP, 1 is PIC), given a step, as a
 /// kinematic viscosity in m2/s, or as a relaxation time in s. The last two do not depend on the
 /// step.
@@ -61,10 +65,12 @@ struct Method {
   SchemeKind scheme = SchemeKind::usf;
   DomainUpdate domain_update = DomainUpdate::none;
   VolumeUpdate volume_update = VolumeUpdate::linear;
+  VolumetricStrain volumetric_strain = VolumetricStrain::point;
   Blend blend;
   TimeStep time_step;
   int threads = 1;
   bool allow_unstable = false;
+  bool ledger = false;  // keep account of every joule
 };
 
 }  // namespace gimpslope

@@ -9,6 +9,7 @@
 
 #include "checks.hpp"
 #include "error.hpp"
+#include "ledger.hpp"
 #include "travel.hpp"
 
 namespace gimpslope {
@@ -61,6 +62,7 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
       grid_(cell, origin[0], origin[1], walls),
       points_(room_for(given, laws_.size(), method, cell)) {
   fill(given);
+  if (method_.volumetric_strain == VolumetricStrain::cell_average) grid_.keep_cells();
   choose_kernel();
   prepare();
   set_time_step(method.time_step);
@@ -144,6 +146,7 @@ void Solver::prepare() {
     }
     stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
+    if (method_.ledger) ledger_rows_.resize(grid_.rows());
     travel_ = 0.0;
     steps_since_sort_ = 0;
     sorted_ = true;
@@ -167,7 +170,8 @@ void Solver::step(double dt, double whole) {
   const double factor = gravity_.factor(time_ + dt);
   const bool courant = method_.time_step.kind == TimeStep::Kind::courant;
   kernel_.step(view(),
-               {dt, share, gravity_.x * factor, gravity_.y * factor, damping_.local, courant},
+               {dt, share, gravity_.x * factor, gravity_.y * factor, gravity_.x, gravity_.y,
+                damping_.local, courant},
                reports_.data());
 
   Report all;
@@ -176,6 +180,10 @@ void Solver::step(double dt, double whole) {
     all.growth = std::max(all.growth, report.growth);
     all.width = std::max(all.width, report.width);
     if (report.lost >= 0) fail_at(report.lost, dt);
+  }
+  if (method_.ledger) {
+    for (const Report& report : reports_) add(report.ledger, ledger_);
+    for (const Ledger& row : ledger_rows_) add(row, ledger_);
   }
   speeds_known_ = false;
   if (courant) gather_speeds();
@@ -241,6 +249,7 @@ void Solver::damp_at_peak() {
   }
   for (int k = 0; k < points_.size; ++k)
     points_.motion[4 * k + 2] = points_.motion[4 * k + 3] = 0.0;
+  ledger_.damping += kinetic;
   last_kinetic_ = 0.0;
   nodes_ready_ = speeds_known_ = false;
 }
@@ -296,6 +305,7 @@ void Solver::set_materials(std::vector<Material> materials) {
 void Solver::reset_clock() {
   time_ = time_carry_ = 0.0;
   steps_ = 0;
+  ledger_ = {};
   std::fill(points_.plastic_strain.begin(), points_.plastic_strain.end(), 0.0);
 }
 
@@ -372,7 +382,8 @@ View Solver::view() {
           half_length_,
           method_.domain_update,
           method_.volume_update,
-          team_.get()};
+          team_.get(),
+          method_.ledger ? ledger_rows_.data() : nullptr};
 }
 
 }  // namespace gimpslope

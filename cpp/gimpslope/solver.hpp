@@ -13,6 +13,7 @@
 #include "grid.hpp"
 #include "kernel.hpp"
 #include "layout.hpp"
+#include "ledger.hpp"
 #include "material/material.hpp"
 #include "method.hpp"
 #include "points.hpp"
@@ -56,10 +57,11 @@ class Solver {
   /// Returns all stresses to the yield surfaces; gives the elastic energy released, J/m.
   double release_stress();
 
-  /// Time and steps start anew at zero, and so does the plastic strain.
+  /// Time and steps start anew at zero, and so do the plastic strain and the ledger.
   void reset_clock();
 
   Energies energies() const;
+  Ledger ledger() const;  // of a method that keeps one
 
   /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,
   /// body_force, half_length, and deformation_gradient (xx, xy, yx, yy) where the method keeps it.
@@ -110,8 +112,10 @@ class Solver {
   Kernel kernel_{};
   Gravity gravity_;
   Damping damping_;
-  std::vector<Report> reports_;  // of each slab
-  Speeds speeds_;                // the largest of all points
+  std::vector<Report> reports_;      // of each slab
+  std::vector<Ledger> ledger_rows_;  // of each row of nodes, in one step
+  Ledger ledger_;
+  Speeds speeds_;  // the largest of all points
   bool speeds_known_ = false;
   double half_length_ = 0.0;  // of all points where they are alike, otherwise their mean, m
   double width_ = 0.0;        // of the widest domain, cells

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "ledger.hpp"
 #include "material/material.hpp"
 #include "method.hpp"
 #include "wall.hpp"
@@ -45,14 +46,16 @@ struct NodeRange {
 /// Four doubles a node. `momentum` {m, m, m vx, m vy}, `velocity` {vx, vx, vy, vy} and `force`
 /// {fx, fx, fy, fy} (the sum of each pair is the force) are laid out so that one multiplication by
 /// {S,x S S,x S} serves both components; `update` {dt vx, dt vy, bx, by} is what a point adds to
-/// its motion. `body` {bx, by, -, -}, the points' body forces, is null until there are any.
+/// its motion. `body` {bx, by, -, -}, the points' body forces, is null until there are any;
+/// `cells` {V, V h tr(L) before, V (sxx + syy) / 2, V after the stress update}, sums over the
+/// points in the cell to the upper right of the node, is null unless they are averaged.
 struct GridView {
   double cell;
   double left, bottom;  // coordinates of node 0
   int stride;           // nodes from one row to the next
   int rows;
   const NodeRange* active;  // of each row
-  double *momentum, *velocity, *force, *update, *body;
+  double *momentum, *velocity, *force, *update, *body, *cells;
   WallKind kind[4];
   double friction[4];
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
@@ -69,11 +72,13 @@ struct View {
   DomainUpdate domain_update;
   VolumeUpdate volume_update;
   Team* team;
+  Ledger* ledger;  // of each row of nodes; null where none is kept
 };
 
 struct StepInput {
   double dt, alpha;
-  double gravity_x, gravity_y;
+  double gravity_x, gravity_y;            // that acts
+  double full_gravity_x, full_gravity_y;  // at the end of its ramp
   double local_damping;
   bool wants_speeds;
 };
@@ -88,6 +93,7 @@ struct Report {
   double travel = 0.0;     // largest displacement of a point, cells
   double growth = 0.0;     // largest change of a half-length, cells; the two add up at an edge
   double width = 0.0;      // largest domain width, cells
+  Ledger ledger;           // the points' entries, where one is kept
   Speeds speeds;           // after the step, where asked for
   std::int32_t lost = -1;  // storage index of a point that moved or grew beyond the limit
 };

@@ -72,9 +72,11 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
                               std::vector<Material> materials, double cell,
                               std::array<double, 2> origin, const std::array<WallTuple, 4>& walls,
                               const std::string& shape, const std::string& domain_update,
-                              const std::string& volume_update, const std::string& scheme,
+                              const std::string& volume_update,
+                              const std::string& volumetric_strain, const std::string& scheme,
                               const Choice& blended, const Choice& step, int threads,
-                              bool allow_unstable, const std::string& instruction_set) {
+                              bool allow_unstable, bool ledger,
+                              const std::string& instruction_set) {
   Method method;
   method.shape = parse<ShapeKind>(
       "shape", shape,
@@ -88,11 +90,15 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
   method.volume_update = parse<VolumeUpdate>(
       "volume_update", volume_update,
       {{"linear", VolumeUpdate::linear}, {"exponential", VolumeUpdate::exponential}});
+  method.volumetric_strain = parse<VolumetricStrain>(
+      "volumetric_strain", volumetric_strain,
+      {{"point", VolumetricStrain::point}, {"cell_average", VolumetricStrain::cell_average}});
   method.scheme = parse<SchemeKind>("scheme", scheme, {{"usf", SchemeKind::usf}});
   method.blend = blend(blended);
   method.time_step = time_step(step);
   method.threads = threads;
   method.allow_unstable = allow_unstable;
+  method.ledger = ledger;
   const py::ssize_t n = rows_of(position);
   InitialPoints points{
       values_of(position, "position", n, 2),       values_of(velocity, "velocity", n, 2),
@@ -186,11 +192,11 @@ void bind_solver(py::module_& m) {
            py::arg("mass"), py::arg("volume"), py::arg("material"), py::arg("materials"),
            py::kw_only(), py::arg("cell"), py::arg("origin"), py::arg("walls"),
            py::arg("shape") = "ugimp", py::arg("domain_update") = "none",
-           py::arg("volume_update") = "linear", py::arg("scheme") = "usf",
-           py::arg("blend") = Choice{"alpha", Blend{}.value},
+           py::arg("volume_update") = "linear", py::arg("volumetric_strain") = "point",
+           py::arg("scheme") = "usf", py::arg("blend") = Choice{"alpha", Blend{}.value},
            py::arg("time_step") = Choice{"courant", TimeStep{}.value},
            py::arg("threads") = Method{}.threads, py::arg("allow_unstable") = false,
-           py::arg("instruction_set") = "")
+           py::arg("ledger") = false, py::arg("instruction_set") = "")
       .def(
           "advance",
           [](Guarded& s, std::int64_t steps) {
@@ -237,6 +243,20 @@ void bind_solver(py::module_& m) {
              result["potential"] = e.potential;
              result["elastic"] = e.elastic;
              result["max_speed"] = e.max_speed;
+             return result;
+           })
+      .def("ledger",
+           [](Guarded& s) {
+             const Ledger found = s.get().ledger();
+             py::dict result;
+             result["plastic"] = found.plastic;
+             result["friction"] = found.friction;
+             result["impact"] = found.impact;
+             result["damping"] = found.damping;
+             result["transfer"] = found.transfer;
+             result["external"] = found.external;
+             result["hypoelastic"] = found.hypoelastic;
+             result["integration"] = found.integration;
              return result;
            })
       .def("get", &values, py::arg("name"))

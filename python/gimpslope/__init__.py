@@ -15,6 +15,7 @@ Angles are in degrees, everything else in SI units.
 from importlib.metadata import version
 
 from . import kernel
+from .ledger import Ledger
 from .materials import DruckerPrager, Elastic, Material
 from .method import Method
 from .outline import Outline
@@ -36,6 +37,7 @@ __all__ = [
     "Fixed",
     "Free",
     "Gravity",
+    "Ledger",
     "Material",
     "Method",
     "NotSettledError",

@@ -19,6 +19,7 @@ from matplotlib.patches import Patch, Polygon
 from . import _check
 from ._check import FloatArray
 from .energy import Energy
+from .ledger import LedgerRows
 from .run import PLASTIC_THRESHOLD, Run
 from .snapshot import Snapshot
 
@@ -94,6 +95,45 @@ def kinetic_energy(
     ax.grid(alpha=0.3)
     if ax.get_legend_handles_labels()[0]:
         ax.legend(loc="upper right")
+    return ax
+
+
+_AREAS = (
+    ("plastic", "plastic work", "#8c2d04"),
+    ("friction", "friction at walls", "#d94801"),
+    ("impact", "impact at walls", "#f7a35c"),
+    ("damping", "damping", "#7f7f7f"),
+    ("transfer", "transfer between points and grid", "#6a51a3"),
+    ("kinetic", "kinetic", "#2171b5"),
+    ("elastic", "elastic", "#41ab5d"),
+    ("potential", "potential, above its least", "#d9d9d9"),
+)
+_VISIBLE = 1e-3
+
+
+def ledger(rows: LedgerRows, ax: Axes | None = None) -> Axes:
+    """Stacked areas of all energies (kJ/m) against time (s): what there is, and where it went.
+
+    Parts below a thousandth of the whole are left out; the two entries that may have either sign,
+    the residue of the time step and that of the rate law, are one line.
+    """
+    ax = ax or _new_axes()
+    parts = {name: getattr(rows, name) / 1e3 for name, _, _ in _AREAS}
+    parts["potential"] = parts["potential"] - parts["potential"].min(initial=np.inf)
+    whole = float(np.sum(list(parts.values()), axis=0).max(initial=0.0))
+    shown = [area for area in _AREAS if np.max(parts[area[0]], initial=0.0) > _VISIBLE * whole]
+    ax.stackplot(
+        rows.time,
+        [np.maximum(parts[name], 0.0) for name, _, _ in shown],
+        labels=[label for _, label, _ in shown],
+        colors=[colour for _, _, colour in shown],
+    )
+    residue = (rows.integration + rows.hypoelastic) / 1e3
+    ax.plot(rows.time, residue, "k--", linewidth=1.0, label="residues of step and rate law")
+    ax.set(xlabel="time since the trigger (s)", ylabel="energy (kJ/m)")
+    ax.set_xlim(np.min(rows.time, initial=0.0), np.max(rows.time, initial=0.0) or 1.0)
+    handles, labels = ax.get_legend_handles_labels()
+    ax.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
     return ax
 
 
@@ -202,7 +242,8 @@ def write_figures(
 ) -> list[Path]:
     """Write the figures of the study for one run as PNG, and return their paths.
 
-    kinetic_energy.png, speed.png, plastic_zone.png, displacement.png and displacement_bars.png.
+    kinetic_energy.png, ledger.png where the run kept one, speed.png, plastic_zone.png,
+    displacement.png and displacement_bars.png.
     A panel of a time after the run's end is left out, and says so.
 
     Parameters
@@ -219,6 +260,7 @@ def write_figures(
     """
     made = {
         "kinetic_energy": _figure(lambda ax: kinetic_energy(run.energy, ax, reference=reference)),
+        **({"ledger": _figure(lambda ax: ledger(run.ledger, ax))} if run.method.ledger else {}),
         "speed": _panels(run, _SPEED, SPEED_TIMES),
         "plastic_zone": _panels(run, _PLASTIC, PLASTIC_TIMES),
         "displacement": _end_figure(run),

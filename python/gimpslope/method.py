@@ -12,6 +12,7 @@ Shape = Literal["linear", "ugimp", "cpgimp"]
 Scheme = Literal["usf"]
 DomainUpdate = Literal["jacobian", "stretch", "deformation_diagonal"]
 VolumeUpdate = Literal["linear", "exponential"]
+VolumetricStrain = Literal["point", "cell_average"]
 
 
 @dataclass(frozen=True)
@@ -37,8 +38,12 @@ class Method(Record):
         U_ii or by the "deformation_diagonal" F_ii; None there: "jacobian"
     volume_update : factor of the volume in a step: "linear" 1 + tr(L) dt (eq. 23 with the trace
         of the strain rate) or "exponential" exp(tr(L) dt)
+    volumetric_strain : of a point: its own, "point", or the mean over the points of its cell,
+        "cell_average", with the mean stress in the forces to match: the mean dilatation of B-bar
+        (Hughes 1980), against locking where the volume hardly changes, as in undrained clay
     threads : number of threads, >= 1; the result does not depend on it
     allow_unstable : accept a time step above the stable limit
+    ledger : keep account of every joule (see `Ledger`); costs speed, changes nothing else
 
     Raises
     ------
@@ -55,16 +60,20 @@ class Method(Record):
     time_step: float | None = None
     domain_update: DomainUpdate | None = None
     volume_update: VolumeUpdate = "linear"
+    volumetric_strain: VolumetricStrain = "point"
     threads: int = 1
     allow_unstable: bool = False
+    ledger: bool = False
 
     def __post_init__(self) -> None:
         _check.one_of("shape", self.shape, get_args(Shape))
         _check.one_of("scheme", self.scheme, get_args(Scheme))
         _check.one_of("volume_update", self.volume_update, get_args(VolumeUpdate))
+        _check.one_of("volumetric_strain", self.volumetric_strain, get_args(VolumetricStrain))
         self._store(
             threads=_check.whole("threads", self.threads, 1),
             allow_unstable=_check.flag("allow_unstable", self.allow_unstable),
+            ledger=_check.flag("ledger", self.ledger),
         )
         self._check_domain_update()
         self._check_blend()
@@ -92,8 +101,10 @@ class Method(Record):
             "time_step": self.step,
             "domain_update": self.domain_update or default_update,
             "volume_update": self.volume_update,
+            "volumetric_strain": self.volumetric_strain,
             "threads": self.threads,
             "allow_unstable": self.allow_unstable,
+            "ledger": self.ledger,
         }
 
     def _check_domain_update(self) -> None:

@@ -75,6 +75,7 @@ class Recorder:
             version=version("gimpslope"),
             instruction_set=self._solver.instruction_set,
             threads=self._solver.threads,
+            ledger=simulation.method.ledger,
             overwrite=_check.flag("overwrite", overwrite),
         )
         self._write_points()
@@ -148,11 +149,13 @@ class Recorder:
 
     def _row(self) -> dict[str, float]:
         energies = self._solver.energies()
+        keeps_ledger = self._simulation.method.ledger
         row = {
             "stage": self._stage,
             "time": self._solver.time,
             "step": self._solver.steps,
             **energies._asdict(),
+            **(self._solver.ledger._asdict() if keeps_ledger else {}),
         }
         self._rows.append(row)
         self._rows_end = self._solver.steps

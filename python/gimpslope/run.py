@@ -15,6 +15,7 @@ from . import _check
 from ._check import FloatArray
 from .energy import Energy, energy_of
 from .io import hdf5
+from .ledger import LedgerRows, ledger_of
 from .method import Method
 from .scene import Scene
 from .snapshot import MaxDisplacement, PointsAtStart, Snapshot
@@ -97,6 +98,11 @@ class Run:
     def energy(self) -> Energy:
         """Energy rows of the slide; `energy.stage(name)` gives those of the other stages."""
         return energy_of(self.path, "slide")
+
+    @property
+    def ledger(self) -> LedgerRows:
+        """Where the energy of the slide went. Raises `ValueError` if the run kept no ledger."""
+        return ledger_of(self.path, "slide")
 
     @property
     def times(self) -> FloatArray:

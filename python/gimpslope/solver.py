@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from . import _check, _core
 from ._check import FloatArray
+from .ledger import Ledger
 from .materials import Material
 from .method import Method
 from .scene import Points, Scene
@@ -172,7 +173,7 @@ class Solver:
         return self._core.release_stress()
 
     def reset_clock(self) -> None:
-        """Set time, steps and plastic strain to zero."""
+        """Set time, steps, plastic strain and ledger to zero."""
         self._core.reset_clock()
 
     def energies(self) -> Energies:
@@ -180,14 +181,22 @@ class Solver:
         elastic energy, J/m, and the largest speed, m/s."""
         return Energies(**self._core.energies())
 
+    @property
+    def ledger(self) -> Ledger:
+        """Where the energy went since the clock was last set to zero, J/m.
+
+        Raises `ValueError` unless the method keeps a ledger.
+        """
+        return Ledger(**self._core.ledger())
+
     def view(self, name: str) -> FloatArray:
         """A field in storage order without a copy, read-only: it shows the present state for as
         long as it lives, and the order changes whenever the kernel sorts its points. `numbers`
         says which points they are.
 
-        Names: position, velocity, body_force (n, 2); stress (n, 4); volume, mass, plastic_strain (n,);
-        half_length (n, 2), not with shape "linear"; deformation_gradient (n, 4) as xx, xy, yx, yy,
-        with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
+        Names: position, velocity, body_force (n, 2); stress (n, 4); volume, mass, plastic_strain
+        (n,); half_length (n, 2), not with shape "linear"; deformation_gradient (n, 4) as xx, xy,
+        yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
         """
         return self._core.view(name)
 

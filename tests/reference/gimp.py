@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import ledger as accounts
 from .drucker_prager import (
     Material,
     elastic_increment,
@@ -13,6 +14,7 @@ from .drucker_prager import (
     return_mapping,
     rotate,
 )
+from .ledger import Ledger
 from .shapes import weights
 from .walls import NO_MOTION, Wall, hold_momentum, hold_velocity
 
@@ -23,7 +25,8 @@ class Reference:
     """Plane-strain material points on a fixed grid; arguments as for the compiled solver.
 
     The state is in plain attributes that may be read and assigned: position, velocity (n, 2);
-    stress (n, 4) as xx, yy, zz, xy; body_force (n, 2), m/s2; mass, volume, plastic_strain (n,); half_length (n, 2);
+    stress (n, 4) as xx, yy, zz, xy; body_force (n, 2), m/s2; mass, volume, plastic_strain (n,);
+    half_length (n, 2); ledger, J/m;
     deformation_gradient (n, 2, 2); materials; time. The grid reaches `margin` cells beyond the
     first positions; a point that leaves it is an error.
     """
@@ -44,6 +47,7 @@ class Reference:
         shape: str,
         domain_update: str = "none",
         volume_update: str = "linear",
+        volumetric_strain: str = "point",
         blend: tuple[str, float],
         time_step: tuple[str, float],
         margin: int = 8,
@@ -53,6 +57,7 @@ class Reference:
             "domain_update", domain_update, "none", "jacobian", "stretch", "deformation_diagonal"
         )
         _check("volume_update", volume_update, "linear", "exponential")
+        _check("volumetric_strain", volumetric_strain, "point", "cell_average")
         _check("blend", blend[0], "alpha", "viscosity", "relaxation_time")
         _check("time_step", time_step[0], "fixed", "courant")
         self.position = np.array(position, float)
@@ -73,6 +78,9 @@ class Reference:
 
         self.cell, self.walls, self.shape = cell, list(walls), shape
         self.domain_update, self.volume_update = domain_update, volume_update
+        self.volumetric_strain = volumetric_strain
+        self.origin = np.asarray(origin)
+        self.ledger = Ledger()
         self.blend, self.step_rule = blend, time_step
         self.set_gravity(0.0, 0.0, 0.0)
         self.set_damping(0.0, False)
@@ -127,7 +135,9 @@ class Reference:
         """Return the present stress to the yield surface; elastic energy released, J/m."""
         before = self._elastic_energy()
         self.stress = self._return(self.stress)
-        return before - self._elastic_energy()
+        released = before - self._elastic_energy()
+        self.ledger.plastic += released
+        return released
 
     def _step(self) -> None:
         dt = self.time_step
@@ -141,42 +151,95 @@ class Reference:
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
 
         velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
+        cells = np.unique(
+            np.floor((self.position - self.origin) / self.cell), axis=0, return_inverse=True
+        )[1].ravel()
+        if self.volumetric_strain == "cell_average":
+            trace = np.trace(velocity_gradient, axis1=1, axis2=2)
+            change = (self._cell_mean(trace, cells) - trace) / 2
+            velocity_gradient = velocity_gradient + change[:, None, None] * np.eye(2)
         self._deform(velocity_gradient, dt)
 
-        sigma = _tensor(self.stress)[:, :2, :2] * self.volume[:, None, None]
-        force = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
+        sigma = _tensor(self.stress)[:, :2, :2]
+        if self.volumetric_strain == "cell_average":
+            mean = np.trace(sigma, axis1=1, axis2=2) / 2
+            sigma = sigma + (self._cell_mean(mean, cells) - mean)[:, None, None] * np.eye(2)
+        sigma = sigma * self.volume[:, None, None]
+        internal = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
         share = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
-        force += mass[:, None] * self.gravity * share
-        force += s.T @ (self.mass[:, None] * self.body_force)
-        force -= self.local_damping * np.abs(force) * np.sign(v)
+        weight = mass[:, None] * self.gravity * share
+        body = s.T @ (self.mass[:, None] * self.body_force)
+        force = internal + weight + body
+        damping = -self.local_damping * np.abs(force) * np.sign(v)
 
-        momentum = hold_momentum(momentum + dt * force, self.nodes, self.walls, self.cell)
+        momentum = hold_momentum(
+            momentum + dt * (force + damping), self.nodes, self.walls, self.cell
+        )
         v_new = _divide(momentum, mass)
         self.node_velocity = np.where(mass[:, None] > 0, v_new, NO_MOTION)
+        accounts.nodes(
+            self.ledger,
+            places=self.nodes,
+            walls=self.walls,
+            cell=self.cell,
+            dt=dt,
+            mass=mass,
+            raw=v_raw,
+            before=v,
+            after=v_new,
+            internal=internal,
+            weight=weight,
+            full_weight=mass[:, None] * self.gravity,
+            body=body,
+            damping=damping,
+        )
 
         alpha = self.alpha(dt)
         pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
+        self.ledger.transfer += self._kinetic_energy()
         self.velocity = alpha * pic + (1 - alpha) * flip
+        self.ledger.transfer -= self._kinetic_energy()
         self.position = self.position + dt * pic
         self._update_domains()
         self._damp_kinetic()
         self.time += dt
 
+    def _cell_mean(self, values: Array, cells: NDArray[np.int64]) -> Array:
+        """Mean over the volume of the points in the same cell."""
+        mean = np.empty_like(values)
+        for cell in np.unique(cells):
+            of = cells == cell
+            mean[of] = np.average(values[of], weights=self.volume[of])
+        return mean
+
     def _deform(self, velocity_gradient: Array, dt: float) -> None:
         """Volume, deformation gradient and stress from the velocity gradient (n, 2, 2)."""
         dilation = np.trace(velocity_gradient, axis1=1, axis2=2) * dt
         linear = self.volume_update == "linear"
+        volume_before = self.volume
         self.volume = self.volume * (1 + dilation if linear else np.exp(dilation))
         self.deformation_gradient = (np.eye(2) + velocity_gradient * dt) @ self.deformation_gradient
 
         strain = np.zeros((len(self.mass), 3, 3))
         strain[:, :2, :2] = (velocity_gradient + np.swapaxes(velocity_gradient, 1, 2)) * dt / 2
         spin = (velocity_gradient[:, 1, 0] - velocity_gradient[:, 0, 1]) * dt / 2
-        trial = rotate(_tensor(self.stress), spin)
+        turned = rotate(_tensor(self.stress), spin)
+        trial = turned.copy()
         for i, material in enumerate(self.materials):
             of = self.material == i
             trial[of] += elastic_increment(material, strain[of])
         self.stress = self._return(_components(trial))
+        for i, material in enumerate(self.materials):
+            of = self.material == i
+            accounts.points(
+                self.ledger,
+                material,
+                turned=turned[of],
+                stress=_tensor(self.stress)[of],
+                strain=strain[of],
+                volume_before=volume_before[of],
+                volume=self.volume[of],
+            )
 
     def _return(self, stress: Array) -> Array:
         returned = stress.copy()
@@ -193,6 +256,9 @@ class Reference:
             of = self.material == i
             energy += self.volume[of] @ energy_density(material, _tensor(self.stress[of]))
         return float(energy)
+
+    def _kinetic_energy(self) -> float:
+        return float(np.sum(self.mass[:, None] * self.velocity**2) / 2)
 
     def _update_domains(self) -> None:
         if self.shape != "cpgimp" or self.domain_update == "none":
@@ -211,9 +277,10 @@ class Reference:
     def _damp_kinetic(self) -> None:
         if not self.kinetic_damping:
             return
-        energy = float(np.sum(self.mass[:, None] * self.velocity**2) / 2)
+        energy = self._kinetic_energy()
         if energy < self.last_kinetic_energy:
             self.velocity = np.zeros_like(self.velocity)
+            self.ledger.damping += energy
             energy = 0.0
         self.last_kinetic_energy = energy
 

@@ -26,7 +26,16 @@ STONE = {"density": 2600.0, "young": 4e6, "poisson": 0.2}
 CLAY = SOIL | {"density": 1800.0, "friction": 0.0, "cohesion": 3e3}
 
 ARRAYS = ("position", "velocity", "half_length", "mass", "volume", "material")
-OPTIONS = ("cell", "origin", "walls", "shape", "domain_update", "volume_update", "blend")
+OPTIONS = (
+    "cell",
+    "origin",
+    "walls",
+    "shape",
+    "domain_update",
+    "volume_update",
+    "volumetric_strain",
+    "blend",
+)
 
 
 def block(

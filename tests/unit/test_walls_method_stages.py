@@ -53,8 +53,10 @@ def test_method_has_the_defaults_of_the_study():
         "time_step": ("courant", 0.4),
         "domain_update": "none",
         "volume_update": "linear",
+        "volumetric_strain": "point",
         "threads": 1,
         "allow_unstable": False,
+        "ledger": False,
     }
 
 

@@ -2,11 +2,11 @@
 // the velocities at its start.
 #pragma once
 
+#include "../sweep/dilatation.hpp"
 #include "../sweep/loops.hpp"
 #include "../sweep/move.hpp"
 #include "../sweep/nodes.hpp"
 #include "../sweep/speeds.hpp"
-#include "../sweep/stress.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -27,16 +27,16 @@ struct Usf {
   }
 
   static void step(const View& view, const StepInput& input, Report* reports) {
+    const auto ledger_of = [&](int row) {
+      return view.ledger != nullptr ? view.ledger + row : nullptr;
+    };
     together(*view.team, [&] {
-      for_each_row(view, [&](int row) { start_nodes(view.grid, row); });
-      for_each_slab(view, [&](int slab) {
-        for_each_block(view, slab, [&](const Block& block) {
-          stress_block<Shape, kOwnDomain>(view, input, block);
-        });
-      });
-      for_each_row(view, [&](int row) { finish_nodes(view.grid, row, input); });
+      for_each_row(view, [&](int row) { start_nodes(view.grid, row, ledger_of(row)); });
+      update_stresses(view, input, reports);
+      for_each_row(view, [&](int row) { finish_nodes(view.grid, row, input, ledger_of(row)); });
       for_each_slab(view, [&](int slab) {
         Report report;
+        report.ledger = reports[slab].ledger;
         for_each_block(view, slab, [&](const Block& block) {
           if (report.lost < 0) move_block(view, input, block, report);
         });
@@ -46,6 +46,35 @@ struct Usf {
   }
 
  private:
+  static void update_stresses(const View& view, const StepInput& input, Report* reports) {
+    const bool averaged = view.grid.cells != nullptr;
+    if (averaged) {
+      for_each_slab(view, [&](int slab) {
+        for_each_block(view, slab, [&](const Block& block) {
+          dilatation_block<Shape, kOwnDomain>(view, block);
+        });
+      });
+    }
+    for_each_slab(view, [&](int slab) {
+      Ledger ledger;
+      for_each_block(view, slab, [&](const Block& block) {
+        if (averaged) {
+          averaged_stress_block<Shape, kOwnDomain>(view, input, block, ledger);
+        } else {
+          stress_block<Shape, kOwnDomain>(view, input, block, ledger);
+        }
+      });
+      reports[slab].ledger = ledger;
+    });
+    if (averaged) {
+      for_each_slab(view, [&](int slab) {
+        for_each_block(view, slab, [&](const Block& block) {
+          averaged_force_block<Shape, kOwnDomain>(view, block);
+        });
+      });
+    }
+  }
+
   static void move_block(const View& view, const StepInput& input, const Block& block,
                          Report& report) {
     const int begin = block.begin, n = block.end - block.begin;

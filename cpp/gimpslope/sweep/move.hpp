@@ -6,6 +6,7 @@
 
 #include "../domain.hpp"
 #include "../travel.hpp"
+#include "accounts.hpp"
 #include "scatter.hpp"
 #include "weights.hpp"
 
@@ -56,6 +57,10 @@ void move_points(const View& view, int begin, int n, double alpha, const Weights
     return;
   }
   report.travel = travel > report.travel ? travel : report.travel;
+  if (view.ledger != nullptr) {
+    report.ledger.transfer -=
+        kinetic_gain(n, view.points.mass + begin, motion, change, 1.0 - alpha);
+  }
   for (int k = 0; k < n; ++k)
     quad(motion + 4 * k) = keep * quad(motion + 4 * k) + quad(change + 4 * k);
 }

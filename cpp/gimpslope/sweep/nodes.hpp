@@ -6,6 +6,7 @@
 #include "../tensor.hpp"
 #include "../view.hpp"
 #include "../wall.hpp"
+#include "accounts.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -37,8 +38,10 @@ void for_each_node(const GridView& g, int row, Inner inner, AtWall wall) {
   for (int i = to; i < range.end; ++i) wall(start + i, i);
 }
 
-/// Velocity of the nodes of a row (paper eq. 20) within the walls; clears the forces.
-inline void start_nodes(const GridView& g, int row) {
+/// Velocity of the nodes of a row (paper eq. 20) within the walls; clears the forces, and begins
+/// the row's ledger where one is kept.
+inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
+  if (ledger != nullptr) *ledger = {};
   const auto velocity = [&](int node, double* v) {
     const double* m = g.momentum + 4 * node;
     const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
@@ -48,6 +51,7 @@ inline void start_nodes(const GridView& g, int row) {
   const auto set = [&](int node, const double* v) {
     quad(g.velocity + 4 * node) = Quad(v[0], v[0], v[1], v[1]);
     quad(g.force + 4 * node).setZero();
+    if (g.cells != nullptr) quad(g.cells + 4 * node).setZero();
   };
   for_each_node(
       g, row,
@@ -59,6 +63,7 @@ inline void start_nodes(const GridView& g, int row) {
       [&](int node, int column) {
         double v[2];
         velocity(node, v);
+        const double raw[2] = {v[0], v[1]};
         const double* moved = g.update + 4 * node;  // in the step before
         for_each_wall(g, column, row, v,
                       [&](Side side, double outward, double& normal, double& tangential) {
@@ -66,57 +71,83 @@ inline void start_nodes(const GridView& g, int row) {
                         constrain(g.kind[side], outward, moved[axis] == 0.0, moved[1 - axis] == 0.0,
                                   normal, tangential);
                       });
+        if (ledger != nullptr) {
+          const double half_mass = 0.5 * g.momentum[4 * node];
+          for (int c = 0; c < 2; ++c)
+            add_wall(g, column, row, c, half_mass * (raw[c] - v[c]) * (raw[c] + v[c]), *ledger);
+        }
         set(node, v);
       });
 }
 
 /// Momentum of the nodes of a row (paper eq. 13) with the walls' reactions, and what a point takes
-/// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass and momentum.
-inline void finish_nodes(const GridView& g, int row, const StepInput& step) {
-  const auto advance = [&](int node, double* before, double* v) {
-    const double* m = g.momentum + 4 * node;
+/// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass and momentum, and
+/// adds to the row's ledger where one is kept.
+inline void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
+  const double gravity[2] = {step.gravity_x, step.gravity_y};
+  const double full_gravity[2] = {step.full_gravity_x, step.full_gravity_y};
+  const auto forces = [&](int node, NodeStep& s) {
     const double* f = g.force + 4 * node;
     const double* shown = g.velocity + 4 * node;
-    const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
-    double fx = f[0] + f[1] + m[0] * step.gravity_x;
-    double fy = f[2] + f[3] + m[0] * step.gravity_y;
-    if (g.body != nullptr) {
-      fx += g.body[4 * node];
-      fy += g.body[4 * node + 1];
+    s.mass = g.momentum[4 * node];
+    for (int c = 0; c < 2; ++c) {
+      s.internal[c] = f[2 * c] + f[2 * c + 1];
+      s.weight[c] = s.mass * gravity[c];
+      s.full_weight[c] = s.mass * full_gravity[c];
+      s.body[c] = g.body != nullptr ? g.body[4 * node + c] : 0.0;
+      const double unbalanced = s.internal[c] + s.weight[c] + s.body[c], v = shown[2 * c];
+      const double sign = (v > 0.0 ? 1.0 : 0.0) - (v < 0.0 ? 1.0 : 0.0);
+      s.damping[c] = -step.local_damping * std::fabs(unbalanced) * sign;
     }
-    const auto sign = [](double x) {
-      return (x > 0.0 ? 1.0 : 0.0) - (x < 0.0 ? 1.0 : 0.0);
-    };
-    fx -= step.local_damping * std::fabs(fx) * sign(shown[0]);
-    fy -= step.local_damping * std::fabs(fy) * sign(shown[2]);
-    before[0] = inverse * m[2];
-    before[1] = inverse * m[3];
-    v[0] = before[0] + step.dt * inverse * fx;
-    v[1] = before[1] + step.dt * inverse * fy;
   };
-  const auto set = [&](int node, const double* before, const double* v) {
+  const auto advance = [&](int node, const NodeStep& s, double* raw, double* v) {
+    const double* m = g.momentum + 4 * node;
+    const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
+    for (int c = 0; c < 2; ++c) {
+      raw[c] = inverse * m[2 + c];
+      v[c] = raw[c] + step.dt * inverse * s.total(c);
+    }
+  };
+  const auto account = [&](int node, NodeStep& s, const double* raw, const double* v,
+                           double (&wall)[2]) {
+    const double before[2] = {g.velocity[4 * node], g.velocity[4 * node + 2]};
+    s.raw = raw;
+    s.before = before;
+    s.after = v;
+    add_node(s, step.dt, *ledger, wall);
+  };
+  const auto set = [&](int node, const double* raw, const double* v) {
     const double flip = 1.0 - step.alpha;
     quad(g.update + 4 * node) =
-        Quad(step.dt * v[0], step.dt * v[1], v[0] - flip * before[0], v[1] - flip * before[1]);
+        Quad(step.dt * v[0], step.dt * v[1], v[0] - flip * raw[0], v[1] - flip * raw[1]);
     quad(g.momentum + 4 * node).setZero();
     if (g.body != nullptr) quad(g.body + 4 * node).setZero();
   };
   for_each_node(
       g, row,
       [&](int node) {
-        double before[2], v[2];
-        advance(node, before, v);
-        set(node, before, v);
+        NodeStep s;
+        double raw[2], v[2], none[2];
+        forces(node, s);
+        advance(node, s, raw, v);
+        if (ledger != nullptr) account(node, s, raw, v, none);
+        set(node, raw, v);
       },
       [&](int node, int column) {
-        double before[2], v[2];
-        advance(node, before, v);
+        NodeStep s;
+        double raw[2], v[2], wall[2];
+        forces(node, s);
+        advance(node, s, raw, v);
         for_each_wall(g, column, row, v,
                       [&](Side side, double outward, double& normal, double& tangential) {
                         react(g.kind[side], g.friction[side], outward, normal, tangential);
                       });
-        if (g.momentum[4 * node] == 0.0) v[0] = v[1] = kNoMotion;
-        set(node, before, v);
+        if (s.mass == 0.0) v[0] = v[1] = kNoMotion;
+        if (ledger != nullptr) {
+          account(node, s, raw, v, wall);
+          for (int c = 0; c < 2; ++c) add_wall(g, column, row, c, -wall[c], *ledger);
+        }
+        set(node, raw, v);
       });
 }
 

@@ -5,6 +5,7 @@
 
 #include "../material/material.hpp"
 #include "../rotation.hpp"
+#include "accounts.hpp"
 #include "scatter.hpp"
 #include "weights.hpp"
 
@@ -108,20 +109,19 @@ inline void point_forces(const View& view, int begin, int n, double* forces) {
   }
 }
 
-template <class Shape, bool kOwnDomain>
-void stress_block(const View& view, const StepInput& input, const Block& block) {
+/// Volume, deformation and stress of a block after its strain increments.
+inline void deform_block(const View& view, const StepInput& input, const Block& block,
+                         Strains& strains, Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
-  Weights<Shape> weights;
-  Strains strains;
-  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
-  gather_gradient(view, n, weights, strains.gradient);
+  const Law& law = view.laws[block.material];
+  StressBefore before;
+  if (view.ledger != nullptr) remember(view, begin, n, before);
   if (view.points.deformation != nullptr) {
     update_deformation(n, strains.gradient, input.dt / view.grid.cell,
                        view.points.deformation + 4 * begin);
   }
   update_volume(view, begin, n, input.dt, strains);
   rotation(n, strains.turn, strains.cosine, strains.sine);
-  const Law& law = view.laws[block.material];
   switch (law.kind) {
     case LawKind::elastic:
       update_stress(view, begin, n, law.drucker_prager.elastic, strains);
@@ -130,6 +130,18 @@ void stress_block(const View& view, const StepInput& input, const Block& block) 
       update_stress(view, begin, n, law.drucker_prager, strains);
       break;
   }
+  if (view.ledger != nullptr)
+    add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);
+}
+
+template <class Shape, bool kOwnDomain>
+void stress_block(const View& view, const StepInput& input, const Block& block, Ledger& ledger) {
+  const int begin = block.begin, n = block.end - block.begin;
+  Weights<Shape> weights;
+  Strains strains;
+  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
+  gather_gradient(view, n, weights, strains.gradient);
+  deform_block(view, input, block, strains, ledger);
   point_forces(view, begin, n, strains.gradient);
   scatter_forces(view, n, weights, strains.gradient);
   if (view.points.body_force != nullptr) scatter_body_forces(view, begin, n, weights);

@@ -9,7 +9,8 @@ Root attributes
     the points at the start of the slide, in the order in which they were given; until the slide
     starts, those of the unloaded slope.
 /energy
-    one column a dataset, all of the same length, rows of all stages.
+    one column a dataset, all of the same length, rows of all stages; with the columns of the ledger
+    where the method keeps one.
 /snapshots
     the slide at chosen times, first at its start; axis 0 is time; 32-bit but for the positions.
 /final
@@ -85,6 +86,17 @@ ENERGY = {
     "max_speed": Quantity("f8", (), "m/s", "speed of the fastest point"),
 }
 
+LEDGER = {
+    "plastic": Quantity("f8", (), "J/m", "plastic work, energy released at the trigger included"),
+    "friction": Quantity("f8", (), "J/m", "work of friction along Coulomb walls"),
+    "impact": Quantity("f8", (), "J/m", "taken by walls at once"),
+    "damping": Quantity("f8", (), "J/m", "taken by local and kinetic damping"),
+    "transfer": Quantity("f8", (), "J/m", "lost between points and grid"),
+    "external": Quantity("f8", (), "J/m", "work of body forces and of the ramp of gravity"),
+    "hypoelastic": Quantity("f8", (), "J/m", "taken by the rate form of the elastic law"),
+    "integration": Quantity("f8", (), "J/m", "residue of the finite time step"),
+}
+
 FIELDS = {
     "position": Quantity("f8", (2,), "m", "position (x, y)"),
     "velocity": Quantity("f8", (2,), "m/s", "velocity (x, y)"),
@@ -106,6 +118,7 @@ class RunWriter:
     scene_json, method_json, stages_json : complete parameters, JSON text
     version : of gimpslope
     instruction_set, threads : what the solver runs on
+    ledger : whether the energy rows have the columns of `LEDGER` too
     overwrite : whether a file that is not empty may be replaced
 
     Raises
@@ -124,9 +137,11 @@ class RunWriter:
         version: str,
         instruction_set: str,
         threads: int,
+        ledger: bool = False,
         overwrite: bool = False,
     ) -> None:
         self.path = Path(path)
+        self._columns = ENERGY | (LEDGER if ledger else {})
         self._rows: list[Arrays] = []
         self._count = 0
         _make_room(self.path, overwrite)
@@ -143,7 +158,7 @@ class RunWriter:
             file.attrs["instruction_set"] = instruction_set
             file.attrs["threads"] = threads
             energy = file.create_group("energy")
-            for name, quantity in ENERGY.items():
+            for name, quantity in self._columns.items():
                 _create_growing(energy, name, quantity, chunk=_ENERGY_CHUNK)
 
     def write_points(
@@ -183,9 +198,9 @@ class RunWriter:
         self._count = count
 
     def append_energy(self, rows: Mapping[str, ArrayLike]) -> None:
-        """Keep rows of energy, one array (k,) for every name in `ENERGY`, for the next flush."""
+        """Keep rows of energy, one array (k,) for every column, for the next flush."""
         count = np.size(rows.get("time", ()))
-        self._rows.append(_checked(rows, ENERGY, count))
+        self._rows.append(_checked(rows, self._columns, count))
 
     def append_snapshot(self, time: float, fields: Mapping[str, ArrayLike]) -> None:
         """Write one snapshot of the slide at `time` (s): an array for every name in `FIELDS`."""
@@ -246,7 +261,7 @@ class RunWriter:
         with uninterrupted():
             with change(self.path) as file:
                 if self._rows:
-                    for name in ENERGY:
+                    for name in self._columns:
                         column = np.concatenate([rows[name] for rows in self._rows])
                         _extend(file["energy"][name], column)
                 yield file
@@ -296,6 +311,16 @@ def read_energy(path: str | PathLike[str]) -> Arrays:
     with _opened(path) as file:
         columns = _read_all(file, "energy", ENERGY)
     length = min(len(column) for column in columns.values())
+    return {name: column[:length] for name, column in columns.items()}
+
+
+@_patient
+def read_ledger(path: str | PathLike[str]) -> Arrays:
+    """The ledger of all stages, one array (k,) for every name in `LEDGER`; none kept: empty."""
+    with _opened(path) as file:
+        kept = "plastic" in file["energy"]
+        columns = _read_all(file, "energy", LEDGER) if kept else {}
+    length = min((len(column) for column in columns.values()), default=0)
     return {name: column[:length] for name, column in columns.items()}
 
 

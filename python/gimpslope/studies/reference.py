@@ -79,12 +79,14 @@ def method(
     time_step: float | None = None,
     threads: int = 1,
 ) -> Method:
-    """uGIMP, USF and the reading's viscosity; a Courant number, or a time step in s."""
+    """uGIMP, USF and the reading's viscosity, with the energy ledger; a Courant number, or a time
+    step in s."""
     return Method(
         viscosity=_reading(reading).viscosity,
         courant=courant,
         time_step=time_step,
         threads=threads,
+        ledger=True,
     )
 
 

@@ -1,0 +1,104 @@
+// Entries of the ledger that nodes and points make: see ledger.hpp.
+#pragma once
+
+#include "../ledger.hpp"
+#include "../rotation.hpp"
+#include "../view.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Books what a wall takes from a component, 0 or 1, of a node's motion.
+inline void add_wall(const GridView& g, int column, int row, int component, double taken,
+                     Ledger& sum) {
+  const auto rubs = [&](Side side, bool touched) {
+    return touched && g.kind[side] == WallKind::coulomb;
+  };
+  const bool along =
+      component == 0 ? rubs(bottom, row <= g.wall[bottom]) || rubs(top, row >= g.wall[top])
+                     : rubs(left, column <= g.wall[left]) || rubs(right, column >= g.wall[right]);
+  (along ? sum.friction : sum.impact) += taken;
+}
+
+/// The forces and velocities of a node in a step.
+struct NodeStep {
+  double mass;
+  double internal[2], weight[2], body[2], damping[2];  // weight: of the gravity that acts
+  double full_weight[2];
+  const double *raw, *before, *after;  // v-, v', v+
+
+  double total(int c) const { return internal[c] + weight[c] + body[c] + damping[c]; }
+};
+
+/// What a step does at a node; gives the work of the walls on each component.
+inline void add_node(const NodeStep& s, double dt, Ledger& sum, double (&wall)[2]) {
+  for (int c = 0; c < 2; ++c) {
+    const double middle = 0.5 * (s.before[c] + s.after[c]), change = s.after[c] - s.before[c];
+    sum.damping -= dt * s.damping[c] * middle;
+    sum.external += dt * (s.body[c] + s.weight[c] - s.full_weight[c]) * middle;
+    sum.integration -= 0.5 * dt * (s.internal[c] - s.full_weight[c]) * change;
+    sum.transfer += 0.5 * s.mass * (s.after[c] - s.raw[c]) * (s.after[c] + s.raw[c]);
+    wall[c] = (s.mass * change - dt * s.total(c)) * middle;
+  }
+}
+
+/// Gain of kinetic energy of n points whose velocity becomes keep v + change.
+inline double kinetic_gain(int n, const double* mass, const double* motion, const double* change,
+                           double keep) {
+  double sum = 0.0;
+#pragma omp simd reduction(+ : sum)
+  for (int k = 0; k < n; ++k) {
+    const double vx = motion[4 * k + 2], vy = motion[4 * k + 3];
+    const double ux = keep * vx + change[4 * k + 2], uy = keep * vy + change[4 * k + 3];
+    sum += 0.5 * mass[k] * ((ux - vx) * (ux + vx) + (uy - vy) * (uy + vy));
+  }
+  return sum;
+}
+
+/// The points of a block before their stresses are updated.
+struct StressBefore {
+  double xx[kBlock], yy[kBlock], zz[kBlock], xy[kBlock], volume[kBlock];
+};
+
+inline void remember(const View& view, int begin, int n, StressBefore& before) {
+  const PointsView& p = view.points;
+  for (int k = 0; k < n; ++k) {
+    before.xx[k] = p.stress_xx[begin + k];
+    before.yy[k] = p.stress_yy[begin + k];
+    before.zz[k] = p.stress_zz[begin + k];
+    before.xy[k] = p.stress_xy[begin + k];
+    before.volume[k] = p.volume[begin + k];
+  }
+}
+
+/// Plastic work and residues of n points whose stress has turned by the rotation and
+/// taken the strain increments of `s`.
+template <class Strains>
+void add_stress_work(const View& view, int begin, int n, const Elastic& law, const Strains& s,
+                     const StressBefore& before, Ledger& sum) {
+  const PointsView& p = view.points;
+  const double* sxx = p.stress_xx + begin;
+  const double* syy = p.stress_yy + begin;
+  const double* szz = p.stress_zz + begin;
+  const double* sxy = p.stress_xy + begin;
+  const double* volume = p.volume + begin;
+  const Compliance compliance = compliance_of(law);
+  double plastic = 0.0, hypoelastic = 0.0, integration = 0.0;
+#pragma omp simd reduction(+ : plastic, hypoelastic, integration)
+  for (int k = 0; k < n; ++k) {
+    const Stress after{sxx[k], syy[k], szz[k], sxy[k]};
+    const Stress old =
+        turned({before.xx[k], before.yy[k], before.zz[k], before.xy[k]}, s.cosine[k], s.sine[k]);
+    const Stress change{after.xx - old.xx, after.yy - old.yy, after.zz - old.zz, after.xy - old.xy};
+    const double work = after.xx * s.xx[k] + after.yy * s.yy[k] + 2.0 * after.xy * s.xy[k];
+    plastic += volume[k] * (work - product(compliance, after, change));
+    hypoelastic -= 0.5 * (volume[k] - before.volume[k]) * product(compliance, old, old);
+    integration += 0.5 * volume[k] * product(compliance, change, change);
+  }
+  sum.plastic += plastic;
+  sum.hypoelastic += hypoelastic;
+  sum.integration += integration;
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

@@ -1,0 +1,83 @@
+// The stress sweep with volume strains averaged over cells, against the locking of nearly
+// incompressible motion: the mean dilatation of B-bar (Hughes 1980) over the points of a cell in
+// place of the Gauss points of an element. The forces take the averaged in-plane mean stress, so
+// that they do just the work of the averaged strains.
+#pragma once
+
+#include "stress.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// The sums of the cell that the place of point k, counted from `begin`, lies in.
+inline double* cell_of(const View& view, int begin, int k) {
+  const GridView& g = view.grid;
+  const double* motion = view.points.motion + 4 * (begin + k);
+  const int column = static_cast<int>((motion[0] - g.left) / g.cell);
+  const int row = static_cast<int>((motion[1] - g.bottom) / g.cell);
+  return g.cells + 4 * (row * g.stride + column);
+}
+
+/// First of three sweeps: volumes and their rates to the cells.
+template <class Shape, bool kOwnDomain>
+void dilatation_block(const View& view, const Block& block) {
+  const int begin = block.begin, n = block.end - block.begin;
+  Weights<Shape> weights;
+  alignas(64) double gradient[4 * kBlock];
+  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
+  gather_gradient(view, n, weights, gradient);
+  for (int k = 0; k < n; ++k) {
+    const double volume = view.points.volume[begin + k];
+    double* cell = cell_of(view, begin, k);
+    cell[0] += volume;
+    cell[1] += volume * (gradient[4 * k] + gradient[4 * k + 3]);
+  }
+}
+
+/// Second: stresses from the averaged strains, and mean stresses to the cells.
+template <class Shape, bool kOwnDomain>
+void averaged_stress_block(const View& view, const StepInput& input, const Block& block,
+                           Ledger& ledger) {
+  const int begin = block.begin, n = block.end - block.begin;
+  const PointsView& p = view.points;
+  Weights<Shape> weights;
+  Strains strains;
+  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
+  gather_gradient(view, n, weights, strains.gradient);
+  for (int k = 0; k < n; ++k) {
+    const double* cell = cell_of(view, begin, k);
+    double* gradient = strains.gradient + 4 * k;
+    const double change = 0.5 * (cell[1] / cell[0] - (gradient[0] + gradient[3]));
+    gradient[0] += change;
+    gradient[3] += change;
+  }
+  deform_block(view, input, block, strains, ledger);
+  for (int k = 0; k < n; ++k) {
+    const double volume = p.volume[begin + k];
+    double* cell = cell_of(view, begin, k);
+    cell[2] += 0.5 * volume * (p.stress_xx[begin + k] + p.stress_yy[begin + k]);
+    cell[3] += volume;
+  }
+}
+
+/// Third: forces of the stresses with their averaged mean.
+template <class Shape, bool kOwnDomain>
+void averaged_force_block(const View& view, const Block& block) {
+  const int begin = block.begin, n = block.end - block.begin;
+  Weights<Shape> weights;
+  alignas(64) double forces[4 * kBlock];
+  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
+  point_forces(view, begin, n, forces);
+  for (int k = 0; k < n; ++k) {
+    const double* cell = cell_of(view, begin, k);
+    const double mean = -view.points.volume[begin + k] / view.grid.cell * (cell[2] / cell[3]);
+    const double change = mean - 0.5 * (forces[4 * k] + forces[4 * k + 3]);
+    forces[4 * k] += change;
+    forces[4 * k + 3] += change;
+  }
+  scatter_forces(view, n, weights, forces);
+  if (view.points.body_force != nullptr) scatter_body_forces(view, begin, n, weights);
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

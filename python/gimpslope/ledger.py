@@ -1,0 +1,133 @@
+"""The energy ledger: where every joule goes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from . import _check
+from ._check import FloatArray
+from .io import hdf5
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+class Ledger(NamedTuple):
+    """What became of the energy since the clock was last set to zero, J/m.
+
+    Kinetic, elastic and potential energy, and all of these, less `external`, add up to a constant
+    but for rounding. That holds while the solver steps; what is set from outside (velocities,
+    positions, stresses, volumes, materials, gravity) changes the constant.
+
+    Attributes
+    ----------
+    plastic : work on plastic strains, with the stress after the return; and the elastic energy that
+        `release_stress` releases
+    friction : taken by Coulomb walls along them
+    impact : motion into or off a wall that the wall takes at once
+    damping : taken by local and kinetic damping
+    transfer : lost between points and grid: by the share of PIC, which smooths the velocities of
+        points, and by the lumped masses of the nodes
+    external : work of body forces, and of the part of gravity that its ramp still holds back
+    hypoelastic : taken by the rate form of the elastic law, which stores energy a volume while
+        volumes change; of either sign, and small where elastic strains are
+    integration : residue of the finite time step; it swings at first order in the step
+    """
+
+    plastic: float
+    friction: float
+    impact: float
+    damping: float
+    transfer: float
+    external: float
+    hypoelastic: float
+    integration: float
+
+
+SINKS = ("plastic", "friction", "impact", "damping", "transfer", "hypoelastic", "integration")
+"""The entries that take energy from the motion; the last two may have either sign."""
+
+
+@dataclass(frozen=True, eq=False)
+class LedgerRows:
+    """Energies and ledger of one stage of a run, one array (k,) a column.
+
+    Attributes
+    ----------
+    time : s; in the slide from the trigger
+    kinetic, potential, elastic : J/m, the state at that time
+    plastic, friction, impact, damping, transfer, external, hypoelastic, integration : as in
+        `Ledger`, J/m; in the slide, `plastic` starts with the energy that the trigger releases
+    """
+
+    time: FloatArray
+    kinetic: FloatArray
+    potential: FloatArray
+    elastic: FloatArray
+    plastic: FloatArray
+    friction: FloatArray
+    impact: FloatArray
+    damping: FloatArray
+    transfer: FloatArray
+    external: FloatArray
+    hypoelastic: FloatArray
+    integration: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def balance(self) -> FloatArray:
+        """The sum that stays constant, J/m."""
+        sinks: FloatArray = np.sum([getattr(self, name) for name in SINKS], axis=0)
+        return self.kinetic + self.potential + self.elastic + sinks - self.external
+
+    @property
+    def turned_over(self) -> float:
+        """The largest drop of the potential energy since the first row, J/m."""
+        return float(self.potential[0] - self.potential.min())
+
+    def shares(self) -> dict[str, float]:
+        """Where the drop in potential energy went by the last row: parts of one.
+
+        Keys: the entries of the ledger but for `external`, and the gains of kinetic and elastic
+        energy, `kinetic` and `elastic`. With external work they add up to more or less than one.
+        Raises `ValueError` where the potential energy has not dropped.
+        """
+        dropped = float(self.potential[0] - self.potential[-1])
+        if dropped <= 0:
+            raise ValueError(f"the potential energy must have dropped, got a drop of {dropped} J/m")
+        gains = {
+            name: float(getattr(self, name)[-1] - getattr(self, name)[0]) / dropped
+            for name in (*SINKS, "kinetic", "elastic")
+        }
+        return gains
+
+    def plot(self, ax: Axes | None = None) -> Axes:
+        """Stacked areas of all energies against time, drawn into `ax` or a new figure."""
+        from . import figures
+
+        return figures.ledger(self, ax)
+
+
+def ledger_of(path: Path, stage: str) -> LedgerRows:
+    """The rows of one stage in the run file at `path`.
+
+    Raises `ValueError` if the run kept no ledger.
+    """
+    number = hdf5.STAGES.index(_check.one_of("stage", stage, hdf5.STAGES))
+    columns = hdf5.read_ledger(path)
+    if not columns:
+        raise ValueError(
+            f"method must have kept a ledger, Method(ledger=True), got none in {str(path)!r}"
+        )
+    energies = hdf5.read_energy(path)
+    count = min(len(energies["time"]), len(columns["plastic"]))
+    rows = energies["stage"][:count] == number
+    names = ("time", "kinetic", "potential", "elastic")
+    everything = {name: energies[name] for name in names} | columns
+    return LedgerRows(**{name: column[:count][rows] for name, column in everything.items()})
