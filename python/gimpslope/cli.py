@@ -1,4 +1,5 @@
-"""The command `gimpslope`: run a slope, measure the speed, show what the build can do."""
+"""The command `gimpslope`: run a slope, verify the solver, measure its speed, show what the build
+can do."""
 
 from __future__ import annotations
 
@@ -15,14 +16,15 @@ import gimpslope as gs
 from . import figures
 from .recording import Recorder
 from .simulation import Simulation
-from .studies import benchmark, reference
+from .studies import benchmark, convergence, reference, verify
+from .studies.verify import report
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; the exit code is 0, 2 for refused arguments, 1 for a failed run and 130
-    for one that was interrupted."""
+    """Run the command line; the exit code is 0, 2 for refused arguments, 1 for a failed run or a
+    check that does not hold, and 130 for one that was interrupted."""
     options = _parser().parse_args(arguments)
-    prepare: Callable[[argparse.Namespace], Callable[[], None]] = options.prepare
+    prepare: Callable[[argparse.Namespace], Callable[[], int]] = options.prepare
     try:
         command = prepare(options)
     except (ValueError, TypeError, OSError) as refused:
@@ -31,17 +33,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     try:
-        command()
+        return command()
     except (gs.Diverged, gs.NotSettledError, OSError) as failed:
         print(f"gimpslope: {failed}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("gimpslope: interrupted", file=sys.stderr)
         return 130
-    return 0
 
 
-def _run(options: argparse.Namespace) -> Callable[[], None]:
+def _run(options: argparse.Namespace) -> Callable[[], int]:
     _check_file("--output", options.output)
     _check_file("--summary", options.summary)
     figure_directory = options.figures or f"{Path(options.output).with_suffix('')}_figures"
@@ -71,7 +72,7 @@ def _run(options: argparse.Namespace) -> Callable[[], None]:
         progress=not options.quiet,
     )
 
-    def command() -> None:
+    def command() -> int:
         run = simulation.run(recorder)
         summary = run.summary
         print(_comparison(summary, options.reading))
@@ -79,6 +80,7 @@ def _run(options: argparse.Namespace) -> Callable[[], None]:
             Path(options.summary).write_text(json.dumps(summary, indent=2) + "\n")
         figures.write_figures(run, figure_directory, reference.PAPER)
         print(f"run: {options.output}   figures: {figure_directory}{os.sep}")
+        return 0
 
     return command
 
@@ -122,29 +124,76 @@ def _comparison(summary: dict[str, float | int | None], reading: str) -> str:
     return "\n".join(lines)
 
 
-def _bench(options: argparse.Namespace) -> Callable[[], None]:
+def _verify(options: argparse.Namespace) -> Callable[[], int]:
+    names = options.names or verify.NAMES
+    for name in names:
+        verify.problem(name)
+    if options.output is not None and Path(options.output).is_file():
+        raise ValueError(f"--output must be a directory, got the file {options.output!r}")
+
+    def announce(problem: verify.Problem) -> None:
+        print(f"{problem.title} ...", file=sys.stderr, flush=True)
+
+    def command() -> int:
+        solved = verify.solve(names, full=options.full, announce=announce)
+        print(report.text(solved))
+        if options.output is not None:
+            report.write(solved, options.output, full=options.full)
+            print(f"table and figures: {options.output}{os.sep}")
+        return 0 if all(one.holds for one in solved) else 1
+
+    return command
+
+
+def _converge(options: argparse.Namespace) -> Callable[[], int]:
+    convergence.check_cells(options.cells)
+    if Path(options.output).is_file():
+        raise ValueError(f"--output must be a directory, got the file {options.output!r}")
+
+    def command() -> int:
+        studies = [
+            convergence.converge(
+                options.output,
+                reading=reading,
+                cells=options.cells,
+                threads=options.threads,
+                progress=not options.quiet,
+            )
+            for reading in options.reading
+        ]
+        print("\n".join(convergence.markdown(study) for study in studies))
+        convergence.write(studies, options.output)
+        print(f"runs, table and figures: {options.output}{os.sep}")
+        return 0
+
+    return command
+
+
+def _bench(options: argparse.Namespace) -> Callable[[], int]:
     _check_file("--json", options.json)
     cases = [
         benchmark.Case(points, threads) for points in options.points for threads in options.threads
     ]
 
-    def command() -> None:
+    def command() -> int:
         measurements = [case.measure() for case in cases]
         print(benchmark.table(measurements))
         if options.json is not None:
             rows = [measurement.to_dict() for measurement in measurements]
             Path(options.json).write_text(json.dumps(rows, indent=2) + "\n")
+        return 0
 
     return command
 
 
-def _info(_: argparse.Namespace) -> Callable[[], None]:
-    def command() -> None:
+def _info(_: argparse.Namespace) -> Callable[[], int]:
+    def command() -> int:
         print(
             f"gimpslope {gs.__version__}, Python {platform.python_version()}, {platform.machine()}"
         )
         print(f"instruction sets: {', '.join(gs.kernel.instruction_sets())} (the last is used)")
         print(f"processors: {os.cpu_count()}")
+        return 0
 
     return command
 
@@ -178,6 +227,45 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
     run.add_argument("--figures", metavar="DIR", help="(default: the output's name + _figures)")
     run.add_argument("--quiet", action="store_true", help="no progress bar")
+
+    check = commands.add_parser("verify", help="solve problems with known answers")
+    check.set_defaults(prepare=_verify, full=False)
+    check.add_argument(
+        "names", nargs="*", metavar="NAME", help=f"all, or some of {', '.join(verify.NAMES)}"
+    )
+    size = check.add_mutually_exclusive_group()
+    size.add_argument(
+        "--quick", dest="full", action="store_false", help="in a minute (the default)"
+    )
+    size.add_argument("--full", action="store_true", help="finest grids and all cases, in minutes")
+    check.add_argument(
+        "--output", metavar="DIR", help="write the table (Markdown, JSON) and the figures"
+    )
+
+    finer = commands.add_parser(
+        "converge", help="run slope A on finer and finer grids; finished runs are taken as they are"
+    )
+    finer.set_defaults(prepare=_converge)
+    finer.add_argument(
+        "--reading",
+        nargs="+",
+        choices=list(reference.READINGS),
+        default=list(reference.READINGS),
+        help="(default: both)",
+    )
+    finer.add_argument(
+        "--cells",
+        type=float,
+        nargs="+",
+        default=list(convergence.CELLS),
+        metavar="H",
+        help="m, each half of the one before (default: 0.4 0.2 0.1 0.05)",
+    )
+    finer.add_argument("--threads", type=int, default=1, metavar="N", help="(default: 1)")
+    finer.add_argument(
+        "--output", default="convergence", metavar="DIR", help="(default: %(default)s)"
+    )
+    finer.add_argument("--quiet", action="store_true", help="no progress bars")
 
     bench = commands.add_parser("bench", help="measure the speed of the kernel on slope A")
     bench.set_defaults(prepare=_bench)

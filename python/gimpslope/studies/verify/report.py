@@ -1,0 +1,148 @@
+"""What the problems came to, as text, Markdown, JSON and pictures."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Sequence
+from importlib.metadata import version
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+from . import Solved
+from .problem import Check
+
+_COLUMNS = ("problem", "quantity", "expected", "got", "error", "order", "holds", "time")
+_DPI = 100
+
+
+def text(solved: Sequence[Solved]) -> str:
+    """The table in lines of text, and the number of checks that hold."""
+    rows = [_COLUMNS, *(row for one in solved for row in _rows(one))]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
+    left = {0, 1, 6}
+    lines = [
+        "  ".join(
+            cell.ljust(width) if column in left else cell.rjust(width)
+            for column, (cell, width) in enumerate(zip(row, widths, strict=True))
+        ).rstrip()
+        for row in rows
+    ]
+    lines.insert(1, "-" * max(map(len, lines)))
+    return "\n".join([*lines, "", _verdict(solved)])
+
+
+def markdown(solved: Sequence[Solved], *, full: bool) -> str:
+    """The table with the reason of each tolerance, and the figures where they lie beside it."""
+    kind = "full" if full else "quick"
+    lines = [
+        "# Verification",
+        "",
+        f"gimpslope {version('gimpslope')}, the {kind} set of `gimpslope verify`. "
+        + _verdict(solved),
+    ]
+    for one in solved:
+        lines += [
+            "",
+            f"## {one.problem.title}",
+            "",
+            f"`{one.problem.name}`, {one.seconds:.1f} s",
+            "",
+            "| quantity | expected | got | error | order | holds | reason of the tolerance |",
+            "|---|---|---|---|---|---|---|",
+        ]
+        for check, row in zip(one.outcome.checks, _rows(one), strict=True):
+            cells = [*row[1:7], check.why]
+            lines.append("| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |")
+        lines += ["", f"![{one.problem.title}]({_picture(one)})"]
+    return "\n".join(lines) + "\n"
+
+
+def data(solved: Sequence[Solved], *, full: bool) -> dict[str, Any]:
+    """The same as plain data for JSON; bounds that are infinite are None."""
+    return {
+        "gimpslope_version": version("gimpslope"),
+        "set": "full" if full else "quick",
+        "problems": [
+            {
+                "name": one.problem.name,
+                "title": one.problem.title,
+                "seconds": one.seconds,
+                "holds": one.holds,
+                "checks": [_plain(check) for check in one.outcome.checks],
+            }
+            for one in solved
+        ],
+    }
+
+
+def write(solved: Sequence[Solved], directory: str | PathLike[str], *, full: bool) -> None:
+    """Write verification.md, verification.json and a picture a problem into a directory, which is
+    made if it does not exist."""
+    folder = Path(directory)
+    folder.mkdir(parents=True, exist_ok=True)
+    for one in solved:
+        one.outcome.figure.savefig(folder / _picture(one), dpi=_DPI)
+    (folder / "verification.md").write_text(markdown(solved, full=full))
+    (folder / "verification.json").write_text(
+        json.dumps(data(solved, full=full), indent=2, allow_nan=False) + "\n"
+    )
+
+
+def _rows(one: Solved) -> list[tuple[str, ...]]:
+    """A row of text a check; name and time of the problem in the first."""
+    first = [(one.problem.name, f"{one.seconds:.1f} s")]
+    heads = first + [("", "")] * (len(one.outcome.checks) - 1)
+    return [
+        (
+            name,
+            check.quantity,
+            _expected(check),
+            _number(check.got),
+            "" if check.error is None else f"{check.error:+.1e}",
+            "" if check.order is None else f"{check.order:.2f}",
+            "yes" if check.holds else "NO",
+            seconds,
+        )
+        for (name, seconds), check in zip(heads, one.outcome.checks, strict=True)
+    ]
+
+
+def _expected(check: Check) -> str:
+    if check.error is not None:
+        return f"{_number(check.expected)} ± {_number(check.high - check.expected)}"
+    sign = "≤" if math.isfinite(check.high) else "≥"
+    return f"{sign} {_number(check.expected)}"
+
+
+def _number(value: float) -> str:
+    return f"{value:.5g}"
+
+
+def _plain(check: Check) -> dict[str, Any]:
+    def finite(value: float) -> float | None:
+        return value if math.isfinite(value) else None
+
+    return {
+        "quantity": check.quantity,
+        "expected": finite(check.expected),
+        "got": finite(check.got),
+        "low": finite(check.low),
+        "high": finite(check.high),
+        "error": check.error,
+        "order": check.order,
+        "holds": check.holds,
+        "why": check.why,
+    }
+
+
+def _picture(one: Solved) -> str:
+    return f"{one.problem.name}.png"
+
+
+def _verdict(solved: Sequence[Solved]) -> str:
+    checks = [check for one in solved for check in one.outcome.checks]
+    held = sum(check.holds for check in checks)
+    seconds = sum(one.seconds for one in solved)
+    return f"{held} of {len(checks)} checks hold; {seconds:.0f} s in all."
