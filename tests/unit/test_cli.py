@@ -10,10 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 import gimpslope as gs
 from gimpslope import cli, figures
-from gimpslope.studies import benchmark, reference
+from gimpslope.studies import benchmark, reference, verify
+from gimpslope.studies.verify import bar
 
 COARSE = ["run", "soil", "--cell", "0.8", "--duration", "0.2", "--quiet"]
 
@@ -197,6 +199,51 @@ def test_bench_refuses(
     assert cli.main(["bench", *small, name, value]) == 2
     shown = capsys.readouterr()
     assert name.strip("-") in shown.err and value in shown.err and shown.out == ""
+
+
+def test_verify(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["verify", "bar", "shear", "--output", "known"]) == 0
+    shown = capsys.readouterr()
+    for word in ("problem", "quantity", "expected", "got", "error", "order", "time"):
+        assert word in shown.out.splitlines()[0]
+    data = json.loads(Path("known/verification.json").read_text())
+    assert [one["name"] for one in data["problems"]] == ["bar", "shear"]
+    assert data["set"] == "quick"
+    table = Path("known/verification.md").read_text()
+    for one in data["problems"]:
+        assert Path("known", f"{one['name']}.png").stat().st_size > 5_000
+        for check in one["checks"]:
+            assert check["holds"] and check["why"] in table and check["quantity"] in shown.out
+
+
+def test_verify_fails_with_exit_code_1(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    check = verify.Check.at_most("error", bound=1.0, got=2.0, why="one is enough")
+    wrong = verify.Problem("bar", "Bar", lambda full: verify.Outcome([check], Figure()))
+    monkeypatch.setattr(bar, "PROBLEM", wrong)
+    assert cli.main(["verify", "bar"]) == 1
+    assert " NO " in capsys.readouterr().out
+
+
+def test_verify_refuses_unknown_problems(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["verify", "bar", "pendulum"]) == 2
+    shown = capsys.readouterr()
+    assert "pendulum" in shown.err and "column" in shown.err and shown.out == ""
+
+
+@pytest.mark.parametrize("words", ["--cells 0.4 0.2", "--cells 0.4 0.2 0.15", "--cells 1 0 0"])
+def test_converge_refuses(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["converge", *words.split()]) == 2
+    assert "cells must be" in capsys.readouterr().err
+    assert not Path("convergence").exists()
+
+
+def test_converge(capsys: pytest.CaptureFixture[str]) -> None:
+    words = "converge --reading identified --cells 4 2 1 --quiet --output finer"
+    assert cli.main(words.split()) == 0
+    assert "h = 1 m" in capsys.readouterr().out
+    assert Path("finer/convergence.md").exists() and Path("finer/soil_identified_4.h5").exists()
 
 
 def test_installed_command() -> None:

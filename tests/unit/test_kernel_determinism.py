@@ -53,6 +53,19 @@ def test_any_number_of_threads(expected: State, threads: int) -> None:
     assert_identical(after(threads=threads), expected)
 
 
+@pytest.mark.parametrize("threads", [2, 3])
+def test_any_number_of_threads_with_cells_and_body_forces(threads: int) -> None:
+    """Averages over cells and forces at nodes are sums that slabs share at their borders."""
+    scene = sliding() | {"volumetric_strain": "cell_average"}
+    scene["body_force"] = np.random.default_rng(3).normal(size=(len(scene["mass"]), 2))
+    states = []
+    for count in (1, threads):
+        stepped = solver(scene, threads=count)
+        stepped.advance(STEPS // 2)
+        states.append(state(stepped))
+    assert_identical(*states)
+
+
 def test_steps_taken_one_by_one(expected: State) -> None:
     stepped = solver(sliding())
     for _ in range(STEPS):

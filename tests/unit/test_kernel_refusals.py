@@ -112,6 +112,10 @@ ARGUMENTS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     # names
     ({"shape": "cubic"}, ("shape", "cubic", "linear", "ugimp", "cpgimp")),
     ({"scheme": "usl"}, ("scheme", "usl", "usf")),
+    (
+        {"volumetric_strain": "nodal"},
+        ("volumetric_strain", "nodal", "point", "cell_average"),
+    ),
     ({"volume_update": "log"}, ("volume_update", "log", "linear", "exponential")),
     (
         {"shape": "cpgimp", "domain_update": "corners"},
@@ -197,6 +201,9 @@ CALLS: list[tuple[str, tuple[Any, ...], tuple[str, ...]]] = [
     ("set", ("stress", np.zeros((N, 3))), ("stress",)),
     ("set", ("stress", np.zeros((4, N))), ("stress",)),
     ("set", ("stress", np.full((N, 4), np.nan)), ("stress", "nan", "finite")),
+    ("set", ("body_force", np.zeros(N)), ("body_force",)),
+    ("set", ("body_force", np.full((N, 2), np.nan)), ("body_force", "nan", "finite")),
+    ("ledger", (), ("ledger",)),
     ("set", ("volume", np.zeros(N)), ("volume", "0", "positive")),
     ("set", ("volume", -np.ones(N)), ("volume", "-1", "positive")),
     ("set", ("plastic_strain", np.zeros(N - 1)), ("plastic_strain", str(N - 1), str(N))),

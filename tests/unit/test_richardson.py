@@ -1,4 +1,4 @@
-"""Extrapolation finds the limit and the order of sequences that have them, and says so where not."""
+"""Extrapolation finds limit and order of sequences that have them, and says so where not."""
 
 from __future__ import annotations
 

@@ -42,6 +42,39 @@ def test_free_fall() -> None:
     assert np.abs(solver.stress).max() < 1e-10 * SOIL.young
 
 
+def test_uniform_body_force_is_a_gravity() -> None:
+    """Also across sorts, by which points change their places in memory; and it stays until it is
+    set anew."""
+    method = gs.Method(alpha=0.0, time_step=2e-3)
+    falling, pushed = floating(gravity=(3.0, -G), method=method), floating(method=method)
+    assert not pushed.body_force.any()
+    pushed.body_force = np.tile([3.0, -G], (N, 1))
+    for solver in (falling, pushed):
+        solver.advance(300)
+    np.testing.assert_allclose(pushed.position, falling.position, rtol=0, atol=1e-9)
+    pushed.body_force = np.zeros((N, 2))
+    before = pushed.velocity
+    pushed.advance(10)
+    np.testing.assert_allclose(pushed.velocity, before, atol=1e-9)
+
+
+def test_body_force_follows_its_points() -> None:
+    """Two halves pushed apart: each goes its own way, whatever its order in memory."""
+    apart = np.where(SCENE.points.position[:, :1] < 4.0, -1.0, 1.0) * (1.0, 0.0)
+    dust = gs.Solver(
+        SCENE.points,
+        [gs.Elastic(1800, 1.0, 0.0)],
+        cell=SCENE.cell,
+        method=gs.Method(alpha=0.0, time_step=5e-3),
+    )
+    dust.body_force = apart * 5.0
+    dust.advance_to(1.0)
+    assert (dust.numbers != np.arange(N)).any()
+    away = np.abs(SCENE.points.position[:, 0] - 4.0) > 2 * SCENE.cell
+    moved = dust.position - SCENE.points.position
+    np.testing.assert_allclose(moved[away, 0], 2.5 * apart[away, 0], rtol=0.05)
+
+
 def test_gravity_grows_linearly_and_then_stays() -> None:
     """Step k of the ramp adds g dt (k dt / ramp)."""
     dt, ramp = 1e-3, 0.1
@@ -147,10 +180,20 @@ def test_arrays_in_the_given_order_and_views_in_storage_order() -> None:
         np.testing.assert_array_equal(solver.view(name), getattr(solver, name)[solver.numbers])
 
 
-@pytest.mark.parametrize(("name", "columns"), [("position", 2), ("velocity", 2), ("stress", 4)])
-def test_setters_take_what_they_give(name: str, columns: int) -> None:
+@pytest.mark.parametrize(
+    ("name", "shape"),
+    [
+        ("position", (N, 2)),
+        ("velocity", (N, 2)),
+        ("body_force", (N, 2)),
+        ("stress", (N, 4)),
+        ("volume", (N,)),
+        ("plastic_strain", (N,)),
+    ],
+)
+def test_setters_take_what_they_give(name: str, shape: tuple[int, ...]) -> None:
     solver = gs.Solver.of(SCENE)
-    values = np.random.default_rng(2).uniform(0.1, 0.2, (N, columns))
+    values = np.random.default_rng(2).uniform(0.1, 0.2, shape)
     setattr(solver, name, values)
     np.testing.assert_array_equal(getattr(solver, name), values)
 

@@ -63,7 +63,7 @@ class Case:
             walls=scene.walls,
             wall_positions=scene.wall_positions,
             gravity=(0.0, -scene.gravity),
-            method=reference.method(threads=self.threads),
+            method=reference.method(threads=self.threads, ledger=False),
             instruction_set=self.instruction_set,
         )
         solver.advance(_WARM_UP)

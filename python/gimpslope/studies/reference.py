@@ -78,15 +78,15 @@ def method(
     courant: float | None = None,
     time_step: float | None = None,
     threads: int = 1,
+    ledger: bool = True,
 ) -> Method:
-    """uGIMP, USF and the reading's viscosity, with the energy ledger; a Courant number, or a time
-    step in s."""
+    """uGIMP, USF and the reading's viscosity; a Courant number, or a time step in s."""
     return Method(
         viscosity=_reading(reading).viscosity,
         courant=courant,
         time_step=time_step,
         threads=threads,
-        ledger=True,
+        ledger=ledger,
     )
 
 

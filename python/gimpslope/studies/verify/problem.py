@@ -63,7 +63,7 @@ class Check:
     @property
     def holds(self) -> bool:
         """Whether `got` lies where it must."""
-        return self.low <= self.got <= self.high
+        return bool(self.low <= self.got <= self.high)
 
     @property
     def error(self) -> float | None:
