@@ -111,13 +111,13 @@ def _rows(one: Solved) -> list[tuple[str, ...]]:
 
 def _expected(check: Check) -> str:
     if check.error is not None:
-        return f"{_number(check.expected)} ± {_number(check.high - check.expected)}"
+        return f"{_number(check.expected)} ± {check.high - check.expected:.2g}"
     sign = "≤" if math.isfinite(check.high) else "≥"
     return f"{sign} {_number(check.expected)}"
 
 
 def _number(value: float) -> str:
-    return f"{value:.5g}"
+    return f"{value:.6g}"
 
 
 def _plain(check: Check) -> dict[str, Any]:
