@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shutil
 from pathlib import Path
 
 import nbformat
@@ -40,14 +41,19 @@ def without_pictures(notebook):
 
 
 def test_runs_at_small_size(path, tmp_path, monkeypatch):
+    """Beside the folders that belong to the notebooks, in which it leaves nothing."""
     monkeypatch.setenv("GIMPSLOPE_CELL", "0.5")
+    for folder in path.parent.iterdir():
+        if folder.is_dir():
+            shutil.copytree(folder, tmp_path / folder.name)
+    before = sorted(tmp_path.rglob("*"))
     notebook = read(path)
     resources = {"metadata": {"path": str(tmp_path)}}
     client = NotebookClient(notebook, timeout=120, kernel_name="python3", resources=resources)
     client.execute()
     assert outputs(notebook, "error") == []
     assert [output.text for output in outputs(notebook, "stream") if output.name == "stderr"] == []
-    assert list(tmp_path.iterdir()) == []
+    assert sorted(tmp_path.rglob("*")) == before
 
 
 def test_committed_outputs_are_of_one_run_from_top_to_bottom(path):

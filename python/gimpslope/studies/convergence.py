@@ -26,7 +26,7 @@ from .richardson import Extrapolation, extrapolate
 CELLS = (0.4, 0.2, 0.1, 0.05)
 DURATION = 10.0  # s
 _NEAR_PEAK = 0.05  # s
-_DPI = 100
+_DPI = 72
 
 
 @dataclass(frozen=True)
@@ -170,12 +170,11 @@ def _peak(run: Run) -> tuple[float, float]:
 def markdown(study: Convergence) -> str:
     """The results as a table."""
     points = ", ".join(f"{n:,}" for n in study.points)
-    seconds = ", ".join(f"{s:.0f}" for s in study.seconds)
     head = ["quantity", *(f"h = {cell:g} m" for cell in study.cells), "orders", "limit", ""]
     lines = [
         f"## Slope A, reading `{study.reading}`",
         "",
-        f"{points} points; {seconds} s of stepping.",
+        f"{points} points.",
         "",
         "| " + " | ".join(head) + " |",
         "|" + "---|" * len(head),

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 import math
+import platform
 from collections.abc import Sequence
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
+from ...kernel import instruction_sets
 from . import Solved
 from .problem import Check
 
 _COLUMNS = ("problem", "quantity", "expected", "got", "error", "order", "holds", "time")
-_DPI = 100
+_DPI = 72
 
 
 def text(solved: Sequence[Solved]) -> str:
@@ -40,7 +42,8 @@ def markdown(solved: Sequence[Solved], *, full: bool) -> str:
         "# Verification",
         "",
         f"gimpslope {version('gimpslope')}, the {kind} set of `gimpslope verify`. "
-        + _verdict(solved),
+        + f"{_verdict(solved)} Times are of one core of this {platform.machine()} machine, with the "
+        f"instructions {instruction_sets()[-1]}.",
     ]
     for one in solved:
         lines += [
