@@ -42,8 +42,8 @@ def markdown(solved: Sequence[Solved], *, full: bool) -> str:
         "# Verification",
         "",
         f"gimpslope {version('gimpslope')}, the {kind} set of `gimpslope verify`. "
-        + f"{_verdict(solved)} Times are of one core of this {platform.machine()} machine, with the "
-        f"instructions {instruction_sets()[-1]}.",
+        + _verdict(solved)
+        + f" Times are of one core, {platform.machine()}, instructions {instruction_sets()[-1]}.",
     ]
     for one in solved:
         lines += [
