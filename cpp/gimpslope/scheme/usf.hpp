@@ -27,13 +27,18 @@ struct Usf {
   }
 
   static void step(const View& view, const StepInput& input, Report* reports) {
-    const auto ledger_of = [&](int row) {
-      return view.ledger != nullptr ? view.ledger + row : nullptr;
-    };
     together(*view.team, [&] {
-      for_each_row(view, [&](int row) { start_nodes(view.grid, row, ledger_of(row)); });
+      for_each_row(view, [&](int row) {
+        start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
+      });
       update_stresses(view, input, reports);
-      for_each_row(view, [&](int row) { finish_nodes(view.grid, row, input, ledger_of(row)); });
+      for_each_row(view, [&](int row) {
+        if (view.ledger != nullptr) {
+          finish_nodes<true>(view.grid, row, input, view.ledger + row);
+        } else {
+          finish_nodes<false>(view.grid, row, input, nullptr);
+        }
+      });
       for_each_slab(view, [&](int slab) {
         Report report;
         report.ledger = reports[slab].ledger;

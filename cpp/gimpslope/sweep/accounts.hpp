@@ -22,24 +22,29 @@ inline void add_wall(const GridView& g, int column, int row, int component, doub
 
 /// The forces and velocities of a node in a step.
 struct NodeStep {
-  double mass;
+  double mass, inverse_mass;
   double internal[2], weight[2], body[2], damping[2];  // weight: of the gravity that acts
   double full_weight[2];
-  const double *raw, *before, *after;  // v-, v', v+
+  double raw[2], before[2], after[2];  // v-, v', v+
 
   double total(int c) const { return internal[c] + weight[c] + body[c] + damping[c]; }
 };
 
-/// What a step does at a node; gives the work of the walls on each component.
-inline void add_node(const NodeStep& s, double dt, Ledger& sum, double (&wall)[2]) {
+/// What a step does at a node.
+inline void add_node(const NodeStep& s, double dt, Ledger& sum) {
   for (int c = 0; c < 2; ++c) {
     const double middle = 0.5 * (s.before[c] + s.after[c]), change = s.after[c] - s.before[c];
     sum.damping -= dt * s.damping[c] * middle;
     sum.external += dt * (s.body[c] + s.weight[c] - s.full_weight[c]) * middle;
     sum.integration -= 0.5 * dt * (s.internal[c] - s.full_weight[c]) * change;
     sum.transfer += 0.5 * s.mass * (s.after[c] - s.raw[c]) * (s.after[c] + s.raw[c]);
-    wall[c] = (s.mass * change - dt * s.total(c)) * middle;
   }
+}
+
+/// Energy that the reactions of the walls take from a component of a node's motion.
+inline double taken_by_walls(const NodeStep& s, double dt, int c) {
+  const double impulse = s.mass * (s.after[c] - s.before[c]) - dt * s.total(c);
+  return -impulse * 0.5 * (s.before[c] + s.after[c]);
 }
 
 /// Gain of kinetic energy of n points whose velocity becomes keep v + change.

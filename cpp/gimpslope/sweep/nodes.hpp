@@ -80,74 +80,68 @@ inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
       });
 }
 
+/// The forces on a node, and its velocities but for the one after the step.
+inline NodeStep forces_on(const GridView& g, int node, const StepInput& step) {
+  const double* m = g.momentum + 4 * node;
+  const double* f = g.force + 4 * node;
+  const double* shown = g.velocity + 4 * node;
+  const double gravity[2] = {step.gravity_x, step.gravity_y};
+  const double full_gravity[2] = {step.full_gravity_x, step.full_gravity_y};
+  const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
+  NodeStep s;
+  s.mass = m[0];
+  s.inverse_mass = inverse;
+  for (int c = 0; c < 2; ++c) {
+    s.raw[c] = inverse * m[2 + c];
+    s.before[c] = shown[2 * c];
+    s.internal[c] = f[2 * c] + f[2 * c + 1];
+    s.weight[c] = m[0] * gravity[c];
+    s.full_weight[c] = m[0] * full_gravity[c];
+    s.body[c] = g.body != nullptr ? g.body[4 * node + c] : 0.0;
+    const double unbalanced = s.internal[c] + s.weight[c] + s.body[c];
+    const double sign = (s.before[c] > 0.0 ? 1.0 : 0.0) - (s.before[c] < 0.0 ? 1.0 : 0.0);
+    s.damping[c] = -step.local_damping * std::fabs(unbalanced) * sign;
+  }
+  return s;
+}
+
 /// Momentum of the nodes of a row (paper eq. 13) with the walls' reactions, and what a point takes
 /// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass and momentum, and
 /// adds to the row's ledger where one is kept.
-inline void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
-  const double gravity[2] = {step.gravity_x, step.gravity_y};
-  const double full_gravity[2] = {step.full_gravity_x, step.full_gravity_y};
-  const auto forces = [&](int node, NodeStep& s) {
-    const double* f = g.force + 4 * node;
-    const double* shown = g.velocity + 4 * node;
-    s.mass = g.momentum[4 * node];
-    for (int c = 0; c < 2; ++c) {
-      s.internal[c] = f[2 * c] + f[2 * c + 1];
-      s.weight[c] = s.mass * gravity[c];
-      s.full_weight[c] = s.mass * full_gravity[c];
-      s.body[c] = g.body != nullptr ? g.body[4 * node + c] : 0.0;
-      const double unbalanced = s.internal[c] + s.weight[c] + s.body[c], v = shown[2 * c];
-      const double sign = (v > 0.0 ? 1.0 : 0.0) - (v < 0.0 ? 1.0 : 0.0);
-      s.damping[c] = -step.local_damping * std::fabs(unbalanced) * sign;
-    }
+template <bool kLedger>
+void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
+  const auto advance = [&](NodeStep& s) {
+    for (int c = 0; c < 2; ++c) s.after[c] = s.raw[c] + step.dt * s.inverse_mass * s.total(c);
   };
-  const auto advance = [&](int node, const NodeStep& s, double* raw, double* v) {
-    const double* m = g.momentum + 4 * node;
-    const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
-    for (int c = 0; c < 2; ++c) {
-      raw[c] = inverse * m[2 + c];
-      v[c] = raw[c] + step.dt * inverse * s.total(c);
-    }
-  };
-  const auto account = [&](int node, NodeStep& s, const double* raw, const double* v,
-                           double (&wall)[2]) {
-    const double before[2] = {g.velocity[4 * node], g.velocity[4 * node + 2]};
-    s.raw = raw;
-    s.before = before;
-    s.after = v;
-    add_node(s, step.dt, *ledger, wall);
-  };
-  const auto set = [&](int node, const double* raw, const double* v) {
+  const auto set = [&](int node, const NodeStep& s) {
     const double flip = 1.0 - step.alpha;
-    quad(g.update + 4 * node) =
-        Quad(step.dt * v[0], step.dt * v[1], v[0] - flip * raw[0], v[1] - flip * raw[1]);
+    quad(g.update + 4 * node) = Quad(step.dt * s.after[0], step.dt * s.after[1],
+                                     s.after[0] - flip * s.raw[0], s.after[1] - flip * s.raw[1]);
     quad(g.momentum + 4 * node).setZero();
     if (g.body != nullptr) quad(g.body + 4 * node).setZero();
   };
   for_each_node(
       g, row,
       [&](int node) {
-        NodeStep s;
-        double raw[2], v[2], none[2];
-        forces(node, s);
-        advance(node, s, raw, v);
-        if (ledger != nullptr) account(node, s, raw, v, none);
-        set(node, raw, v);
+        NodeStep s = forces_on(g, node, step);
+        advance(s);
+        if constexpr (kLedger) add_node(s, step.dt, *ledger);
+        set(node, s);
       },
       [&](int node, int column) {
-        NodeStep s;
-        double raw[2], v[2], wall[2];
-        forces(node, s);
-        advance(node, s, raw, v);
-        for_each_wall(g, column, row, v,
+        NodeStep s = forces_on(g, node, step);
+        advance(s);
+        for_each_wall(g, column, row, s.after,
                       [&](Side side, double outward, double& normal, double& tangential) {
                         react(g.kind[side], g.friction[side], outward, normal, tangential);
                       });
-        if (s.mass == 0.0) v[0] = v[1] = kNoMotion;
-        if (ledger != nullptr) {
-          account(node, s, raw, v, wall);
-          for (int c = 0; c < 2; ++c) add_wall(g, column, row, c, -wall[c], *ledger);
+        if (s.mass == 0.0) s.after[0] = s.after[1] = kNoMotion;
+        if constexpr (kLedger) {
+          add_node(s, step.dt, *ledger);
+          for (int c = 0; c < 2; ++c)
+            add_wall(g, column, row, c, taken_by_walls(s, step.dt, c), *ledger);
         }
-        set(node, raw, v);
+        set(node, s);
       });
 }
 
