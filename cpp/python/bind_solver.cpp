@@ -5,55 +5,12 @@
 #include <memory>
 
 #include "bind.hpp"
+#include "bind_method.hpp"
 #include "gimpslope/solver.hpp"
 
 using namespace gimpslope;
 
 namespace {
-
-using WallTuple = std::tuple<std::string, double, double>;  // kind, friction, position
-using Choice = std::pair<std::string, double>;              // what a value means, the value
-
-/// Indices of materials; numbers with a fraction are refused, not cut.
-std::vector<std::int32_t> indices_of(const py::array& given, py::ssize_t n) {
-  const char kind = given.dtype().kind();
-  if (given.ndim() != 1 || given.shape(0) != n || (kind != 'i' && kind != 'u')) {
-    refuse(
-        "material",
-        py::cast<std::string>(py::str("{} of shape {}").format(given.dtype(), given.attr("shape"))),
-        "an array of whole numbers of shape (" + std::to_string(n) + ", )");
-  }
-  const py::array_t<std::int64_t, py::array::c_style | py::array::forcecast> wide(given);
-  std::vector<std::int32_t> result(static_cast<std::size_t>(n));
-  for (py::ssize_t k = 0; k < n; ++k)
-    result[k] = static_cast<std::int32_t>(std::clamp<std::int64_t>(wide.at(k), -1, INT32_MAX));
-  return result;
-}
-
-Wall wall(const WallTuple& given) {
-  const auto& [kind, friction, position] = given;
-  return {parse<WallKind>("wall", kind,
-                          {{"free", WallKind::free},
-                           {"roller", WallKind::roller},
-                           {"fixed", WallKind::fixed},
-                           {"coulomb", WallKind::coulomb}}),
-          friction, position};
-}
-
-TimeStep time_step(const Choice& given) {
-  return {parse<TimeStep::Kind>(
-              "time_step", given.first,
-              {{"fixed", TimeStep::Kind::fixed}, {"courant", TimeStep::Kind::courant}}),
-          given.second};
-}
-
-Blend blend(const Choice& given) {
-  return {parse<Blend::Kind>("blend", given.first,
-                             {{"alpha", Blend::Kind::alpha},
-                              {"viscosity", Blend::Kind::viscosity},
-                              {"relaxation_time", Blend::Kind::relaxation_time}}),
-          given.second};
-}
 
 /// A solver that one thread at a time may use: stepping goes on without the interpreter's lock.
 struct Guarded {
@@ -87,30 +44,20 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
                            {"jacobian", DomainUpdate::jacobian},
                            {"stretch", DomainUpdate::stretch},
                            {"deformation_diagonal", DomainUpdate::deformation_diagonal}});
-  method.volume_update = parse<VolumeUpdate>(
-      "volume_update", volume_update,
-      {{"linear", VolumeUpdate::linear}, {"exponential", VolumeUpdate::exponential}});
+  method.volume_update = volume_update_of(volume_update);
   method.volumetric_strain = parse<VolumetricStrain>(
       "volumetric_strain", volumetric_strain,
       {{"point", VolumetricStrain::point}, {"cell_average", VolumetricStrain::cell_average}});
   method.scheme = parse<SchemeKind>("scheme", scheme, {{"usf", SchemeKind::usf}});
-  method.blend = blend(blended);
-  method.time_step = time_step(step);
+  method.blend = blend_of(blended);
+  method.time_step = time_step_of(step);
   method.threads = threads;
   method.allow_unstable = allow_unstable;
   method.ledger = ledger;
-  const py::ssize_t n = rows_of(position);
-  InitialPoints points{
-      values_of(position, "position", n, 2),       values_of(velocity, "velocity", n, 2),
-      values_of(half_length, "half_length", n, 2), values_of(mass, "mass", n, 1),
-      values_of(volume, "volume", n, 1),           {}};
-  const std::vector<std::int32_t> indices = indices_of(material, n);
-  points.material = indices;
+  const GivenPoints given(position, velocity, half_length, mass, volume, material);
   return std::unique_ptr<Guarded>(
-      new Guarded{Solver(points, std::move(materials), cell, origin,
-                         {wall(walls[0]), wall(walls[1]), wall(walls[2]), wall(walls[3])}, method,
-                         instruction_set.empty() ? available_instruction_sets().back()
-                                                 : parse_instruction_set(instruction_set))});
+      new Guarded{Solver(given.points, std::move(materials), cell, origin, walls_of(walls), method,
+                         instruction_set_of(instruction_set))});
 }
 
 /// Runs chunk(solver, steps) -> finished without the interpreter's lock, in pieces of about a
@@ -226,7 +173,7 @@ void bind_solver(py::module_& m) {
       .def(
           "set_time_step",
           [](Guarded& s, const std::string& kind, double value) {
-            s.get().set_time_step(time_step({kind, value}));
+            s.get().set_time_step(time_step_of({kind, value}));
           },
           py::arg("kind"), py::arg("value"))
       .def(

@@ -5,4 +5,5 @@ PYBIND11_MODULE(_core, m) {
   bind_material(m);
   bind_kernel(m);
   bind_solver(m);
+  bind_plain(m);
 }

@@ -94,6 +94,32 @@ class Solver:
     @property
     def bytes(self) -> int: ...
 
+class Plain:
+    def __init__(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        half_length: ArrayLike,
+        mass: ArrayLike,
+        volume: ArrayLike,
+        material: ArrayLike,
+        materials: Sequence[Material],
+        *,
+        cell: float,
+        origin: tuple[float, float],
+        walls: Sequence[tuple[str, float, float]],
+        blend: tuple[str, float],
+        time_step: tuple[str, float],
+        volume_update: str = ...,
+        gravity: tuple[float, float],
+        margin: int,
+        instruction_set: str = ...,
+    ) -> None: ...
+    def advance(self, steps: int) -> None: ...
+    def get(self, name: str) -> NDArray[np.float64]: ...
+    @property
+    def time(self) -> float: ...
+
 courant_limit: float
 
 def instruction_sets() -> list[str]: ...
