@@ -233,8 +233,7 @@ void Solver::follow_width(double width) {
     const auto point = (std::max_element(l.begin(), l.end()) - l.begin()) / 2;
     fail("the domain of point " + std::to_string(points_.number[point]) + " is " + text(width_) +
              " cells wide, of 3 allowed; likely cause: shear or extension that domain_update "
-             "stretch "
-             "or deformation_diagonal follows without bound (jacobian does not)",
+             "stretch or deformation_diagonal follows without bound, or soil that came apart",
          points_.number[point]);
   }
   const Basis needed = width_ > widest(Basis::gimp_own) ? Basis::gimp_wide : Basis::gimp_own;
