@@ -68,7 +68,8 @@ double Solver::release_stress() {
 }
 
 Ledger Solver::ledger() const {
-  require(method_.ledger, "ledger", "a method without one", "asked of a method with a ledger");
+  require(method_.ledger, "method", "one without a ledger",
+          "one that keeps a ledger, Method(ledger=True)");
   return ledger_;
 }
 
@@ -80,8 +81,10 @@ FieldView Solver::field(const std::string& name) {
   if (name == "volume") return {p.volume.data(), 1, 1, 1};
   if (name == "mass") return {p.mass.data(), 1, 1, 1};
   if (name == "plastic_strain") return {p.plastic_strain.data(), 1, 1, 1};
-  if (name == "body_force" && p.body_force.empty()) return {&no_force_, 0, 0, 2};
-  if (name == "body_force") return {p.body_force.data(), 2, 1, 2};
+  if (name == "body_force") {
+    keep_body_forces();
+    return {p.body_force.data(), 2, 1, 2};
+  }
   if (name == "half_length" && !p.half_length.empty()) return {p.half_length.data(), 2, 1, 2};
   if (name == "half_length" && method_.shape != ShapeKind::linear) return {&half_length_, 0, 0, 2};
   if (name == "deformation_gradient" && !p.deformation.empty())
@@ -93,7 +96,17 @@ FieldView Solver::field(const std::string& name) {
   return {};
 }
 
+/// Body forces take room, in points and nodes, from when one is first set or looked at.
+void Solver::keep_body_forces() {
+  if (!points_.body_force.empty()) return;
+  points_.body_force.assign(2 * static_cast<std::size_t>(points_.size), 0.0);
+  grid_.keep_body_forces();
+  sorted_ = false;
+}
+
 std::vector<double> Solver::values(const std::string& name) {
+  if (name == "body_force" && points_.body_force.empty())
+    return std::vector<double>(2 * static_cast<std::size_t>(points_.size), 0.0);
   const FieldView f = field(name);
   std::vector<double> result(static_cast<std::size_t>(f.components) * points_.size);
   for (int k = 0; k < points_.size; ++k)
@@ -111,10 +124,9 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
   check_values(values, static_cast<std::size_t>(field(name).components) * points_.size,
                name == "volume", name.c_str());
   if (name == "position") grid_.check_reach(values);
-  if (name == "body_force" && points_.body_force.empty()) {
-    points_.body_force.assign(2 * static_cast<std::size_t>(points_.size), 0.0);
-    grid_.keep_body_forces();
-    sorted_ = false;
+  if (name == "plastic_strain") {
+    for (const double value : values)
+      require(value >= 0.0, "plastic_strain", value, "zero or positive");
   }
   const FieldView f = field(name);
   for (int k = 0; k < points_.size; ++k)

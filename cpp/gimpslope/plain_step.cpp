@@ -69,12 +69,8 @@ void deform(const PlainView& g, PlainPoint& p, double dt) {
   p.volume *= g.volume_update == VolumeUpdate::linear ? 1.0 + grown : std::exp(grown);
   const double turn = dt * (yx - xy);
   Stress stress = turned({p.sxx, p.syy, p.szz, p.sxy}, std::cos(turn), std::sin(turn));
-  const Law& law = g.laws[p.material];
-  if (law.kind == LawKind::elastic) {
-    update(law.drucker_prager.elastic, stress, strain, p.plastic_strain);
-  } else {
-    update(law.drucker_prager, stress, strain, p.plastic_strain);
-  }
+  with_constants(g.laws[p.material],
+                 [&](const auto& law) { update(law, stress, strain, p.plastic_strain); });
   p.sxx = stress.xx;
   p.syy = stress.yy;
   p.szz = stress.zz;

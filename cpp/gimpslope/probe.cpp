@@ -76,20 +76,18 @@ void return_mapping(const Material& material, std::span<double> stress,
 
 void update_stress(const Material& material, std::span<const double> velocity_gradient, double dt,
                    std::int64_t steps, std::span<double> stress, std::span<double> plastic_strain) {
-  const Law constants = law(material);
+  const Law of_material = law(material);
   const auto deform = [&](const double* l, Stress& point, double& plastic) {
     const double turn = dt * (l[2] - l[1]);
     double cosine, sine;
     rotation(1, &turn, &cosine, &sine);
     const Strain increment{dt * l[0], dt * l[3], 0.5 * dt * (l[1] + l[2])};
-    for (std::int64_t step = 0; step < steps; ++step) {
-      point = turned(point, cosine, sine);
-      if (constants.kind == LawKind::elastic) {
-        update(constants.drucker_prager.elastic, point, increment, plastic);
-      } else {
-        update(constants.drucker_prager, point, increment, plastic);
+    with_constants(of_material, [&](const auto& constants) {
+      for (std::int64_t step = 0; step < steps; ++step) {
+        point = turned(point, cosine, sine);
+        update(constants, point, increment, plastic);
       }
-    }
+    });
   };
   for (std::size_t k = 0; k < plastic_strain.size(); ++k) {
     double* s = stress.data() + 4 * k;

@@ -91,6 +91,7 @@ class Solver {
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
   [[noreturn]] void fail_at(int lost, double dt);
   void follow_width(double width);
+  void keep_body_forces();
   void damp_at_peak();
   void check_step(const TimeStep& step, const std::vector<Material>& materials) const;
   double stable_time_step_of(const std::vector<Material>& materials) const;
@@ -125,8 +126,7 @@ class Solver {
   std::string failure_;          // why no step can follow
   std::int64_t steps_ = 0;
   double last_kinetic_ = 0.0;
-  double no_force_ = 0.0;  // body force of all points where none was given
-  double travel_ = 0.0;    // since the last sort, at most, cells
+  double travel_ = 0.0;  // since the last sort, at most, cells
   int steps_since_sort_ = 0;
   bool sorted_ = false;
   bool nodes_ready_ = false;  // mass and momentum at the nodes are those of the points

@@ -108,8 +108,8 @@ py::array_t<double> values(Guarded& guarded, const std::string& name) {
   Solver& solver = guarded.get();
   const std::vector<double> found = solver.values(name);
   std::vector<py::ssize_t> shape{solver.size()};
-  if (const int components = solver.field(name).components; components > 1)
-    shape.push_back(components);
+  const auto components = static_cast<py::ssize_t>(found.size()) / shape[0];
+  if (components > 1) shape.push_back(components);
   return py::array_t<double>(shape, found.data());
 }
 

@@ -77,15 +77,29 @@ def nodes(
     m = mass[:, None]
     middle = (before + after) / 2
     impulse = m * (after - before) - dt * (internal + weight + body + damping)
-    taken = m * (raw**2 - before**2) / 2 - impulse * middle
-    rubbed = np.zeros_like(places, dtype=bool)
-    for (axis, into), (kind, _, position) in zip(SIDES, walls, strict=True):
-        touched = into * (places[:, axis] - position) >= -1e-9 * cell
-        if kind == "coulomb":
-            rubbed[touched, 1 - axis] = True
-    ledger.friction += float(taken[rubbed].sum())
-    ledger.impact += float(taken[~rubbed].sum())
+    for taken, stopped in (
+        (m * (raw**2 - before**2) / 2, before == 0),
+        (-impulse * middle, (before == 0) | (after == 0)),
+    ):
+        rubbed = _rubbed(stopped, places, walls, cell)
+        ledger.friction += float(taken[rubbed].sum())
+        ledger.impact += float(taken[~rubbed].sum())
     ledger.damping -= float(dt * np.sum(damping * middle))
     ledger.external += float(dt * np.sum((body + weight - full_weight) * middle))
     ledger.integration -= float(dt / 2 * np.sum((internal - full_weight) * (after - before)))
     ledger.transfer += float(np.sum(m * (after**2 - raw**2)) / 2)
+
+
+def _rubbed(stopped: Array, places: Array, walls: Sequence[Wall], cell: float) -> Array:
+    """Components (n, 2) along a Coulomb wall that no other wall can have brought to a stop."""
+    along = np.zeros_like(stopped)
+    hit = np.zeros_like(stopped)
+    for (axis, into), (kind, _, position) in zip(SIDES, walls, strict=True):
+        touched = into * (places[:, axis] - position) >= -1e-9 * cell
+        if kind == "coulomb":
+            along[touched, 1 - axis] = True
+        if kind != "free":
+            hit[touched, axis] = True
+        if kind == "fixed":
+            hit[touched] = True
+    return np.asarray(along & ~(hit & stopped))

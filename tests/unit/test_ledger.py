@@ -185,6 +185,20 @@ def test_friction_takes_mu_n_times_the_slide() -> None:
     assert balance(sliding_block) == pytest.approx(start, rel=1e-10)
 
 
+@pytest.mark.parametrize("left", [gs.Roller(), gs.Fixed(), gs.Coulomb(0.0)])
+def test_nothing_rubs_off_on_smooth_walls(left: gs.Roller | gs.Fixed | gs.Coulomb) -> None:
+    """A block thrown into a corner of smooth walls: what the walls take is impact."""
+    walls = replace(FREE, left=left, bottom=gs.Coulomb(0.0))
+    thrown = block(walls, gs.Method(alpha=0.01))
+    thrown.set_gravity(0.0, -G)
+    thrown.velocity = np.tile([-2.0, -1.0], (len(thrown), 1))
+    start = balance(thrown)
+    thrown.advance(300)
+    assert thrown.ledger.impact > 0.01 * thrown.mass.sum()
+    assert abs(thrown.ledger.friction) < 1e-9 * thrown.ledger.impact
+    assert balance(thrown) == pytest.approx(start, rel=1e-10)
+
+
 @pytest.mark.parametrize("damping", [{"local": 0.3}, {"kinetic": True}])
 def test_damping_takes_what_is_missing(damping: dict[str, float]) -> None:
     """Under gravity the start has rho^2 g^2 H^3 / (6 M) a metre of width more than the state of

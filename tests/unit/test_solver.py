@@ -48,7 +48,9 @@ def test_uniform_body_force_is_a_gravity() -> None:
     method = gs.Method(alpha=0.0, time_step=2e-3)
     falling, pushed = floating(gravity=(3.0, -G), method=method), floating(method=method)
     assert not pushed.body_force.any()
+    shown = pushed.view("body_force")
     pushed.body_force = np.tile([3.0, -G], (N, 1))
+    np.testing.assert_array_equal(shown, pushed.body_force)
     for solver in (falling, pushed):
         solver.advance(300)
     np.testing.assert_allclose(pushed.position, falling.position, rtol=0, atol=1e-9)

@@ -53,4 +53,22 @@ struct Law {
 
 Law law(const Material& material);
 
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Calls act(constants) with the constants of the law that a material follows: the one place that
+/// tells laws apart.
+template <class Act>
+void with_constants(const Law& law, Act act) {
+  switch (law.kind) {
+    case LawKind::elastic:
+      act(law.drucker_prager.elastic);
+      return;
+    case LawKind::drucker_prager:
+      act(law.drucker_prager);
+      return;
+  }
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+
 }  // namespace gimpslope

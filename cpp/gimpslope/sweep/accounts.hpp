@@ -8,16 +8,22 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Books what a wall takes from a component, 0 or 1, of a node's motion.
-inline void add_wall(const GridView& g, int column, int row, int component, double taken,
-                     Ledger& sum) {
-  const auto rubs = [&](Side side, bool touched) {
-    return touched && g.kind[side] == WallKind::coulomb;
+/// Books what walls take from a component, 0 or 1, of a node's motion, which they may have
+/// `stopped`: as friction where a Coulomb wall lies along it and no other wall can have stopped it.
+inline void add_wall(const GridView& g, int column, int row, int component, bool stopped,
+                     double taken, Ledger& sum) {
+  bool rubs = false, hits = false;
+  const auto look = [&](Side side, bool touched) {
+    if (!touched || g.kind[side] == WallKind::free) return;
+    const bool normal = (side == left || side == right) == (component == 0);
+    if (normal || g.kind[side] == WallKind::fixed) hits = hits || stopped;
+    if (!normal && g.kind[side] == WallKind::coulomb) rubs = true;
   };
-  const bool along =
-      component == 0 ? rubs(bottom, row <= g.wall[bottom]) || rubs(top, row >= g.wall[top])
-                     : rubs(left, column <= g.wall[left]) || rubs(right, column >= g.wall[right]);
-  (along ? sum.friction : sum.impact) += taken;
+  look(left, column <= g.wall[left]);
+  look(right, column >= g.wall[right]);
+  look(bottom, row <= g.wall[bottom]);
+  look(top, row >= g.wall[top]);
+  (rubs && !hits ? sum.friction : sum.impact) += taken;
 }
 
 /// The forces and velocities of a node in a step.

@@ -74,7 +74,8 @@ inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
         if (ledger != nullptr) {
           const double half_mass = 0.5 * g.momentum[4 * node];
           for (int c = 0; c < 2; ++c)
-            add_wall(g, column, row, c, half_mass * (raw[c] - v[c]) * (raw[c] + v[c]), *ledger);
+            add_wall(g, column, row, c, v[c] == 0.0, half_mass * (raw[c] - v[c]) * (raw[c] + v[c]),
+                     *ledger);
         }
         set(node, v);
       });
@@ -139,7 +140,8 @@ void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* led
         if constexpr (kLedger) {
           add_node(s, step.dt, *ledger);
           for (int c = 0; c < 2; ++c)
-            add_wall(g, column, row, c, taken_by_walls(s, step.dt, c), *ledger);
+            add_wall(g, column, row, c, s.before[c] == 0.0 || s.after[c] == 0.0,
+                     taken_by_walls(s, step.dt, c), *ledger);
         }
         set(node, s);
       });

@@ -122,14 +122,8 @@ inline void deform_block(const View& view, const StepInput& input, const Block& 
   }
   update_volume(view, begin, n, input.dt, strains);
   rotation(n, strains.turn, strains.cosine, strains.sine);
-  switch (law.kind) {
-    case LawKind::elastic:
-      update_stress(view, begin, n, law.drucker_prager.elastic, strains);
-      break;
-    case LawKind::drucker_prager:
-      update_stress(view, begin, n, law.drucker_prager, strains);
-      break;
-  }
+  with_constants(law,
+                 [&](const auto& constants) { update_stress(view, begin, n, constants, strains); });
   if (view.ledger != nullptr)
     add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);
 }
