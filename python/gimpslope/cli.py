@@ -85,6 +85,13 @@ def _run(options: argparse.Namespace) -> Callable[[], int]:
     return command
 
 
+def _make_directory(option: str, path: str) -> None:
+    """Make, before any work is done, the directory for what comes of it."""
+    if Path(path).is_file():
+        raise ValueError(f"{option} must be a directory, got the file {path!r}")
+    Path(path).mkdir(parents=True, exist_ok=True)
+
+
 def _check_file(option: str, path: str | None) -> None:
     """Refuse, before any work is done, a file that could not be written after it."""
     if path is None:
@@ -128,8 +135,8 @@ def _verify(options: argparse.Namespace) -> Callable[[], int]:
     names = options.names or verify.NAMES
     for name in names:
         verify.problem(name)
-    if options.output is not None and Path(options.output).is_file():
-        raise ValueError(f"--output must be a directory, got the file {options.output!r}")
+    if options.output is not None:
+        _make_directory("--output", options.output)
 
     def announce(problem: verify.Problem) -> None:
         print(f"{problem.title} ...", file=sys.stderr, flush=True)
@@ -146,9 +153,11 @@ def _verify(options: argparse.Namespace) -> Callable[[], int]:
 
 
 def _converge(options: argparse.Namespace) -> Callable[[], int]:
-    convergence.check_cells(options.cells)
-    if Path(options.output).is_file():
-        raise ValueError(f"--output must be a directory, got the file {options.output!r}")
+    for cell in convergence.check_cells(options.cells):
+        for reading in options.reading:
+            reference.soil_slope(reading, cell)
+    reference.method(threads=options.threads)
+    _make_directory("--output", options.output)
 
     def command() -> int:
         studies = [

@@ -114,8 +114,8 @@ _VISIBLE = 1e-3
 def ledger(rows: LedgerRows, ax: Axes | None = None) -> Axes:
     """Stacked areas of all energies (kJ/m) against time (s): what there is, and where it went.
 
-    Parts below a thousandth of the whole are left out; the two entries that may have either sign,
-    the residue of the time step and that of the rate law, are one line.
+    Parts below a thousandth of the whole are left out, and so are negative parts; the two entries
+    that may have either sign, the residue of the time step and that of the rate law, are one line.
     """
     ax = ax or _new_axes()
     parts = {name: getattr(rows, name) / 1e3 for name, _, _ in _AREAS}

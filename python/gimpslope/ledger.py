@@ -19,16 +19,16 @@ if TYPE_CHECKING:
 class Ledger(NamedTuple):
     """What became of the energy since the clock was last set to zero, J/m.
 
-    Kinetic, elastic and potential energy, and all of these, less `external`, add up to a constant
-    but for rounding. That holds while the solver steps; what is set from outside (velocities,
-    positions, stresses, volumes, materials, gravity) changes the constant.
+    Kinetic, elastic and potential energy and `taken` add up to a constant but for rounding. That
+    holds while the solver steps; what is set from outside (velocities, positions, stresses,
+    volumes, materials, gravity) changes the constant.
 
     Attributes
     ----------
     plastic : work on plastic strains, with the stress after the return; and the elastic energy that
         `release_stress` releases
     friction : taken by Coulomb walls along them
-    impact : motion into or off a wall that the wall takes at once
+    impact : what walls take at once of motion into them or off them, and, if they are fixed, along
     damping : taken by local and kinetic damping
     transfer : lost between points and grid: by the share of PIC, which smooths the velocities of
         points, and by the lumped masses of the nodes
@@ -47,6 +47,11 @@ class Ledger(NamedTuple):
     hypoelastic: float
     integration: float
 
+    @property
+    def taken(self) -> float:
+        """Sum of all entries less `external`: what the motion has lost, J/m."""
+        return sum(self) - 2 * self.external
+
 
 SINKS = ("plastic", "friction", "impact", "damping", "transfer", "hypoelastic", "integration")
 """The entries that take energy from the motion; the last two may have either sign."""
@@ -58,12 +63,14 @@ class LedgerRows:
 
     Attributes
     ----------
+    path : the run file
     time : s; in the slide from the trigger
     kinetic, potential, elastic : J/m, the state at that time
     plastic, friction, impact, damping, transfer, external, hypoelastic, integration : as in
         `Ledger`, J/m; in the slide, `plastic` starts with the energy that the trigger releases
     """
 
+    path: Path
     time: FloatArray
     kinetic: FloatArray
     potential: FloatArray
@@ -88,7 +95,11 @@ class LedgerRows:
 
     @property
     def turned_over(self) -> float:
-        """The largest drop of the potential energy since the first row, J/m."""
+        """The largest drop of the potential energy since the first row, J/m.
+
+        Raises `ValueError` for a stage without rows, as `shares` and `plot` do.
+        """
+        self._refuse_empty()
         return float(self.potential[0] - self.potential.min())
 
     def shares(self) -> dict[str, float]:
@@ -98,20 +109,29 @@ class LedgerRows:
         energy, `kinetic` and `elastic`. With external work they add up to more or less than one.
         Raises `ValueError` where the potential energy has not dropped.
         """
+        self._refuse_empty()
         dropped = float(self.potential[0] - self.potential[-1])
         if dropped <= 0:
             raise ValueError(f"the potential energy must have dropped, got a drop of {dropped} J/m")
-        gains = {
+        return {
             name: float(getattr(self, name)[-1] - getattr(self, name)[0]) / dropped
             for name in (*SINKS, "kinetic", "elastic")
         }
-        return gains
+
+    def stage(self, name: str) -> LedgerRows:
+        """The rows of another stage: "gravity", "settling" or "slide"."""
+        return ledger_of(self.path, name)
 
     def plot(self, ax: Axes | None = None) -> Axes:
         """Stacked areas of all energies against time, drawn into `ax` or a new figure."""
         from . import figures
 
+        self._refuse_empty()
         return figures.ledger(self, ax)
+
+    def _refuse_empty(self) -> None:
+        if len(self) == 0:
+            raise ValueError(f"the stage must have energy rows, got none in {str(self.path)!r}")
 
 
 def ledger_of(path: Path, stage: str) -> LedgerRows:
@@ -130,4 +150,4 @@ def ledger_of(path: Path, stage: str) -> LedgerRows:
     rows = energies["stage"][:count] == number
     names = ("time", "kinetic", "potential", "elastic")
     everything = {name: energies[name] for name in names} | columns
-    return LedgerRows(**{name: column[:count][rows] for name, column in everything.items()})
+    return LedgerRows(path, **{name: column[:count][rows] for name, column in everything.items()})

@@ -41,7 +41,8 @@ class Method(Record):
     volumetric_strain : of a point: its own, "point", or the mean over the points of its cell,
         "cell_average", with the mean stress in the forces to match: the mean dilatation of B-bar
         (Hughes 1980), against locking where the volume hardly changes, as in undrained clay. Not
-        for large elastic motions: a point that crosses into another cell meets another mean stress
+        for large elastic motions: a point that crosses into another cell meets another mean stress.
+        The mean is over all materials in the cell
     threads : number of threads, >= 1; the result does not depend on it
     allow_unstable : accept a time step above the stable limit
     ledger : keep account of every joule (see `Ledger`); costs speed, changes nothing else

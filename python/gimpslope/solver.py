@@ -37,6 +37,10 @@ class Solver:
     Arrays go in and come out in the order in which the points were given. The kernel keeps its
     points sorted by cell: `view` and `numbers` show them as they lie in memory.
 
+    A step takes its strains from the velocities at its start, so velocities belong to half a step
+    before the positions, stresses and volumes to a whole step before. For second order in the step,
+    give them so.
+
     Parameters
     ----------
     points : the material points
@@ -247,7 +251,11 @@ class Solver:
 
     @property
     def volume(self) -> FloatArray:
-        """Area in the plane, m2, > 0, shape (n,)."""
+        """Area in the plane, m2, > 0, shape (n,).
+
+        Setting it changes the wave speed, against which a fixed time step is not checked anew, and
+        with cpGIMP by the jacobian the domains.
+        """
         return self._core.get("volume")
 
     @volume.setter
@@ -268,7 +276,7 @@ class Solver:
     @property
     def plastic_strain(self) -> FloatArray:
         """Equivalent plastic strain, the sum of sqrt(2/3 de_p:de_p) of the deviatoric increments,
-        shape (n,)."""
+        >= 0, shape (n,)."""
         return self._core.get("plastic_strain")
 
     @plastic_strain.setter

@@ -232,11 +232,29 @@ def test_verify_refuses_unknown_problems(capsys: pytest.CaptureFixture[str]) -> 
     assert "pendulum" in shown.err and "column" in shown.err and shown.out == ""
 
 
-@pytest.mark.parametrize("words", ["--cells 0.4 0.2", "--cells 0.4 0.2 0.15", "--cells 1 0 0"])
-def test_converge_refuses(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        ("--cells 0.4 0.2", "cells"),
+        ("--cells 0.4 0.2 0.15", "cells"),
+        ("--cells 1 0 0", "cells"),
+        ("--cells 100 50 25", "cell"),
+        ("--threads 0", "threads"),
+    ],
+)
+def test_converge_refuses(words: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["converge", *words.split()]) == 2
-    assert "cells must be" in capsys.readouterr().err
+    assert f"{name} must be" in capsys.readouterr().err
     assert not Path("convergence").exists()
+
+
+@pytest.mark.parametrize("command", ["verify bar", "converge --cells 4 2 1"])
+def test_directories_that_cannot_be_made(command: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("taken").write_text("a file")
+    for output in ("taken", "taken/below"):
+        assert cli.main([*command.split(), "--output", output]) == 2
+        shown = capsys.readouterr()
+        assert output in shown.err and shown.out == ""
 
 
 def test_converge(capsys: pytest.CaptureFixture[str]) -> None:

@@ -26,7 +26,7 @@ def balance(solver: gs.Solver) -> float:
     """The sum that must stay constant, J/m."""
     energies, ledger = solver.energies(), solver.ledger
     state = energies.kinetic + energies.potential + energies.elastic
-    return state + sum(ledger) - 2 * ledger.external
+    return state + ledger.taken
 
 
 def block(walls: gs.Walls, method: gs.Method, material: gs.Material = ROCK) -> gs.Solver:
@@ -275,6 +275,23 @@ def test_run_closes_with_a_small_residue(run: gs.Run) -> None:
     assert rows.plastic[0] == pytest.approx(run.trigger["energy_released"], rel=1e-12)
     assert sum(rows.shares().values()) == pytest.approx(1, rel=1e-9)
     assert rows.shares()["plastic"] > 0.5
+
+
+def test_other_stages_have_ledgers_too(run: gs.Run) -> None:
+    loading, settling = run.ledger.stage("gravity"), run.ledger.stage("settling")
+    assert loading.external[-1] < 0  # the ramp holds the weight back
+    assert (settling.damping > 0).all() and settling.plastic[-1] == pytest.approx(0, abs=1e-6)
+    np.testing.assert_allclose(loading.balance, loading.balance[0], rtol=1e-10)
+
+
+def test_a_run_that_never_slid(tmp_path: Path) -> None:
+    never = gs.Stages(gs.Gravity(0.1), gs.Settling(ratio=1e-30, limit=0.1))
+    with pytest.raises(gs.NotSettledError):
+        simulate(tmp_path / "never.h5", stages=never)
+    rows = gs.open(tmp_path / "never.h5").ledger
+    for use in (rows.shares, rows.plot, lambda: rows.turned_over):
+        with pytest.raises(ValueError, match="must have energy rows"):
+            use()
 
 
 def test_run_is_drawn(run: gs.Run) -> None:

@@ -46,6 +46,11 @@ def test_what_does_not_converge_says_so(values: tuple[float, ...], behaviour: st
     assert found.uncertainty >= 3 * (max(values) - min(values)) * (1 - 1e-12)
 
 
+def test_results_that_agree_have_converged() -> None:
+    found = extrapolate((3.0, 3.0, 3.0))
+    assert (found.limit, found.uncertainty, found.behaviour) == (3.0, 0.0, "converges")
+
+
 def test_refused() -> None:
     with pytest.raises(ValueError, match=r"values must be of at least three grids, got 2"):
         extrapolate((1.0, 2.0))

@@ -6,10 +6,10 @@ cell; the viscosity of the velocity blend stays the same, which alpha a step wou
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
+from importlib.metadata import version
 from itertools import pairwise
 from os import PathLike
 from pathlib import Path
@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from .. import _check
 from ..run import Run
 from ..simulation import simulate
-from . import reference
+from . import plain_data, reference
 from .richardson import Extrapolation, extrapolate
 
 CELLS = (0.4, 0.2, 0.1, 0.05)
@@ -217,8 +217,11 @@ def write(studies: Sequence[Convergence], directory: str | PathLike[str]) -> Non
     sections = [markdown(study) for study in studies]
     pictures = [f"![{study.reading}](convergence_{study.reading}.png)\n" for study in studies]
     parts = [part for pair in zip(sections, pictures, strict=True) for part in pair]
-    (folder / "convergence.md").write_text("# Convergence of slope A\n\n" + "\n".join(parts))
+    head = (
+        f"# Convergence of slope A\n\ngimpslope {version('gimpslope')}, `gimpslope converge`.\n\n"
+    )
+    (folder / "convergence.md").write_text(head + "\n".join(parts))
     for study in studies:
         figure(study).savefig(folder / f"convergence_{study.reading}.png", dpi=_DPI)
-    plain = json.dumps([asdict(study) for study in studies], indent=2)
-    (folder / "convergence.json").write_text(plain.replace("NaN", "null") + "\n")
+    plain = plain_data.dumps([asdict(study) for study in studies])
+    (folder / "convergence.json").write_text(plain)

@@ -32,7 +32,7 @@ class Extrapolation:
         changes differ in sign
     limit : estimated value at zero cell size; NaN unless the last three approach one
     uncertainty : of the limit, or of the finest value where there is none; 95 % by the sources
-    behaviour : "converges": the last three approach a limit with an order in [0.5, 2.1];
+    behaviour : "converges": the last three approach a limit with an order in [0.5, 2.1], or agree;
         "order not settled": they approach one with another order; "oscillates": their changes
         differ in sign; "diverges": the last change is the larger one
     """
@@ -54,6 +54,8 @@ def extrapolate(values: Sequence[float]) -> Extrapolation:
     orders = tuple(_order(a, b) for a, b in pairwise(changes))
     order, last, finest = orders[-1], float(changes[-1]), float(values[-1])
     spread = float(np.ptp(values[-3:]))
+    if spread == 0:
+        return Extrapolation(orders, finest, 0.0, "converges")
     if math.isnan(order):
         return Extrapolation(orders, math.nan, _CAUTION * spread, "oscillates")
     if order <= 0:

@@ -52,7 +52,7 @@ def run(full: bool) -> Outcome:
             expected=law,
             got=damped.energy[-1],
             within=0.05 * (1 - law),
-            why="viscosity law, leading order in h: 5 % of the loss; published 0.964",
+            why="law of an endless bar: 5 % of the loss for its ends; published 0.964",
         ),
         Check.near(
             "the same, C = 0.5: alpha damps less in larger steps",
@@ -66,7 +66,7 @@ def run(full: bool) -> Outcome:
             expected=1 - law,
             got=damped.transfer,
             within=0.05 * (1 - law),
-            why="all that viscosity takes is lost between points and grid: 5 %",
+            why="all that viscosity takes is lost between points and grid: 5 % for the ends",
         ),
         Check.near(
             "period, s",

@@ -105,13 +105,14 @@ def step(
     apart = 1e-3 * abs(axial)
     gradient = np.zeros((2, 2, 2))
     gradient[:, 1, 1] = axial
-    while True:
+    for _ in range(100):
         gradient[:, 0, 0] = lateral, lateral - apart
         after = gs.kernel.update_stress(material, np.tile(stress, (2, 1)), gradient, 1.0).stress
         miss, other = after[:, 0] + side
         if abs(miss) <= 1e-12 * side:
             return after[0], lateral
         lateral += apart * miss / (other - miss)
+    raise ArithmeticError(f"the sides must be held at {side} Pa, got {after[0, 0]}")
 
 
 def mohr_coulomb(side: float) -> float:

@@ -5,9 +5,8 @@ soon as they share a node: here the one in the middle, when the domain of the fo
 each comes within a cell of it along both axes. That is (h + l) / 0.1 s early, and a little less as
 the foremost point of the lattice lies within the circle.
 
-The disks bounce as a whole, but for the share of the energy that stays in them as vibrations: by a
-finite-element model of one disk at a rigid mirror the centres part at 0.906 of their first speed.
-Energy is kept but for what the ledger of the method lists: the rate form of Hooke's law, of second
+The disks bounce, but for the share of the energy that stays in them as vibrations. Energy is kept
+but for what the ledger of the method lists: the rate form of Hooke's law, of second
 order in the strain of about v / c, and the finite step.
 """
 
@@ -27,7 +26,6 @@ RADIUS, SPEED = 0.2, 0.1  # m, m/s along each axis
 CENTRES = np.array([(0.2, 0.2), (0.8, 0.8)])  # m
 RUBBER = gs.Elastic(density=1000.0, young=1000.0, poisson=0.3)
 DURATION, COURANT = 4.0, 0.1  # s
-REBOUND = 0.906  # of the centres, share of their first speed, by finite elements
 MEETING = (np.hypot(0.6, 0.6) / 2 - RADIUS) / (np.sqrt(2) * SPEED)  # of the circles, s
 ENERGY = 2 * RUBBER.density * np.pi * RADIUS**2 * SPEED**2  # kinetic, at the start, J/m
 
@@ -87,12 +85,6 @@ def check_bounce(cell: float, found: Bounce) -> list[Check]:
             got=float(np.abs(found.momentum).max() / (start / SPEED / 2)),
             why="forces of the grid add up to nothing: rounding",
         ),
-        Check.at_least(
-            f"kinetic energy after the bounce{at}, share",
-            bound=REBOUND**2,
-            got=float(found.kinetic[-1] / start),
-            why="rebound of the centres by finite elements, without the vibrations",
-        ),
         Check.near(
             f"energy after the bounce{at}, share",
             expected=1.0,
@@ -110,7 +102,7 @@ def check_bounce(cell: float, found: Bounce) -> list[Check]:
         Check.near(
             f"energy and ledger after the bounce{at}, share",
             expected=1.0,
-            got=float((end + sum(found.ledger)) / start),
+            got=float((end + found.ledger.taken) / start),
             within=1e-11,
             why="exact: rounding of some thousand steps",
         ),
@@ -135,7 +127,7 @@ def bounce(cell: float) -> Bounce:
         method=gs.Method(alpha=0.0, courant=COURANT, ledger=True),
     )
     rows = [row(solver)]
-    while solver.energies().elastic < 1e-20 * ENERGY:  # rounding makes 1e-30
+    while solver.energies().elastic < 1e-20 * ENERGY and solver.time < DURATION:  # rounding: 1e-30
         solver.step()
     contact = solver.time
     for time in np.linspace(contact, DURATION, 80):

@@ -102,15 +102,15 @@ def run(full: bool) -> Outcome:
             ),
             Check.at_least(
                 f"point: gain of load / c in the last third{at}",
-                bound=5 * GAIN,
+                bound=GAIN,
                 got=locked.load_at(0.95) - locked.load_at(0.65),
-                why="no limit load: it goes on rising, well above that swing",
+                why="no limit load: it goes on rising, by more than that",
             ),
             Check.at_most(
                 f"checkerboard of the mean stress, cell average over point{at}",
                 bound=0.1,
                 got=cured.checkerboard() / locked.checkerboard(),
-                why="one volume strain a cell leaves the smooth part of the stress: a tenth",
+                why="stress changes by c over some cells, a checkerboard by 10 c and more: a tenth",
             ),
         ]
     if full:
@@ -120,7 +120,7 @@ def run(full: bool) -> Outcome:
                 "cell average: excess of the load, halved cell over cell",
                 bound=0.75,
                 got=(fine - FACTOR) / (coarse - FACTOR),
-                why="an excess of first order in h: one half",
+                why="first order would halve it; the singular edge allows less: an order of 0.4",
             )
         )
     return Outcome(checks, draw(*tests[cells[-1]]))
@@ -144,7 +144,7 @@ def push(cell: float, strain: Strain) -> Test:
     force = np.zeros((len(solver), 2))
     patience = 10 * solver.time_step  # of the control of the speed, s
     settlement, load = [0.0], [0.0]
-    while settlement[-1] < SETTLEMENT:
+    while settlement[-1] < SETTLEMENT and solver.time < 2 * (RAMP + SETTLEMENT / SPEED):
         wanted = -SPEED * min(1.0, solver.time / RAMP)
         inertia = mass * SPEED / RAMP if solver.time < RAMP else 0.0
         force[pushed, 1] = (wanted - solver.velocity[pushed, 1].mean()) / patience

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import json
 import math
 import platform
 from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 from ...kernel import instruction_sets
+from .. import plain_data
 from . import Solved
 from .problem import Check
 
@@ -63,7 +64,7 @@ def markdown(solved: Sequence[Solved], *, full: bool) -> str:
 
 
 def data(solved: Sequence[Solved], *, full: bool) -> dict[str, Any]:
-    """The same as plain data for JSON; bounds that are infinite are None."""
+    """The same as plain data."""
     return {
         "gimpslope_version": version("gimpslope"),
         "set": "full" if full else "quick",
@@ -88,9 +89,7 @@ def write(solved: Sequence[Solved], directory: str | PathLike[str], *, full: boo
     for one in solved:
         one.outcome.figure.savefig(folder / _picture(one), dpi=_DPI)
     (folder / "verification.md").write_text(markdown(solved, full=full))
-    (folder / "verification.json").write_text(
-        json.dumps(data(solved, full=full), indent=2, allow_nan=False) + "\n"
-    )
+    (folder / "verification.json").write_text(plain_data.dumps(data(solved, full=full)))
 
 
 def _rows(one: Solved) -> list[tuple[str, ...]]:
@@ -114,7 +113,10 @@ def _rows(one: Solved) -> list[tuple[str, ...]]:
 
 def _expected(check: Check) -> str:
     if check.error is not None:
-        return f"{_number(check.expected)} ± {check.high - check.expected:.2g}"
+        below, above = check.expected - check.low, check.high - check.expected
+        if math.isclose(below, above):
+            return f"{_number(check.expected)} ± {above:.2g}"
+        return f"{_number(check.expected)} -{below:.2g} +{above:.2g}"
     sign = "≤" if math.isfinite(check.high) else "≥"
     return f"{sign} {_number(check.expected)}"
 
@@ -124,20 +126,7 @@ def _number(value: float) -> str:
 
 
 def _plain(check: Check) -> dict[str, Any]:
-    def finite(value: float) -> float | None:
-        return value if math.isfinite(value) else None
-
-    return {
-        "quantity": check.quantity,
-        "expected": finite(check.expected),
-        "got": finite(check.got),
-        "low": finite(check.low),
-        "high": finite(check.high),
-        "error": check.error,
-        "order": check.order,
-        "holds": check.holds,
-        "why": check.why,
-    }
+    return asdict(check) | {"error": check.error, "holds": check.holds}
 
 
 def _picture(one: Solved) -> str:

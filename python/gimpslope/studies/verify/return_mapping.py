@@ -30,11 +30,13 @@ EXACT = 1e-12  # rounding, in parts of SPREAD
 
 
 class Return(NamedTuple):
-    """Trial and returned stresses of a material: columns of p and sqrt(J2), Pa, (n, 2)."""
+    """Trial and returned stresses of a material: columns of p and sqrt(J2), Pa, (n, 2); and how far
+    a deviator has left its direction, Pa."""
 
     material: gs.DruckerPrager
     trial: FloatArray
     after: FloatArray
+    turned: float
 
 
 def run(full: bool) -> Outcome:
@@ -51,6 +53,7 @@ def run(full: bool) -> Outcome:
     associated = [case for case in returns if case.material.dilation == FRICTION]
     errors = {
         "beyond the yield surface": max(map(overshoot, returns)),
+        "turn of the deviator": max(case.turned for case in returns),
         "departure from the flow rule": max(map(flow_error, returns)),
         "distance from the closest point, psi = phi": max(map(closest_point_error, associated)),
         "departure from the closed form, psi = 0": max(map(closed_form_error, zero)),
@@ -88,13 +91,19 @@ def stresses(n: int) -> FloatArray:
 
 def mapped(material: gs.DruckerPrager, trial: FloatArray) -> Return:
     after = gs.kernel.return_mapping(material, trial).stress
-    return Return(material, in_plane(trial), in_plane(after))
+    before, then = deviator(trial), deviator(after)
+    root_before, root_then = (in_plane(stress)[:, 1:] for stress in (trial, after))
+    turned = np.abs(then - before * root_then / root_before).max()
+    return Return(material, in_plane(trial), in_plane(after), float(turned))
+
+
+def deviator(stress: FloatArray) -> FloatArray:
+    return stress - stress[:, :3].mean(axis=1, keepdims=True) * (1, 1, 1, 0)
 
 
 def in_plane(stress: FloatArray) -> FloatArray:
-    mean = stress[:, :3].mean(axis=1)
-    deviator = stress - mean[:, None] * (1, 1, 1, 0)
-    return np.stack([mean, np.sqrt(deviator**2 @ (0.5, 0.5, 0.5, 1.0))], axis=1)
+    root = np.sqrt(deviator(stress) ** 2 @ (0.5, 0.5, 0.5, 1.0))
+    return np.stack([stress[:, :3].mean(axis=1), root], axis=1)
 
 
 def room(material: gs.DruckerPrager, stress: FloatArray) -> FloatArray:

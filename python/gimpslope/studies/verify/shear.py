@@ -52,7 +52,7 @@ def run(full: bool) -> Outcome:
         ),
         *(
             Check.near(
-                f"deviator after a turn in {n} steps, first-order spin",
+                f"deviator after a turn in {n} steps, first-order spin (not the kernel's)",
                 expected=published,
                 got=first_order[n],
                 within=within,

@@ -64,7 +64,7 @@ def run(full: bool) -> Outcome:
             "linear: acceleration of inner points in a step, sigma / rho h",
             bound=0.8 * jump / 2,
             got=kicks["linear"],
-            why="sigma s at the node of a cell with a third point, felt by a point that is close",
+            why="sigma s at a node, felt by a point within a fifth of a cell of it",
         ),
         Check.near(
             "GIMP, overlapping: largest force at the node, sigma A",
