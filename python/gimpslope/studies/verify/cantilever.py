@@ -8,8 +8,8 @@ a stiff block instead, and the wall is behind that.
 
 At the root the upper side stretches to twice its length. The domains of GIMP, squares that never
 turn, leave gaps there: with 3 x 3 points a cell the beam bends as it should but does not swing all
-the way back: to -0.22 m in the published uGIMP, to -0.41 m here, which misses the 5 %. With 6 x 6 it
-does: the gaps are the smaller the more points share a cell.
+the way back: to -0.22 m in the published uGIMP, to -0.41 m here, which misses the 5 %. With 6 x 6
+it does: the gaps are the smaller the more points share a cell.
 """
 
 from __future__ import annotations

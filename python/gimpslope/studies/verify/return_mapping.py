@@ -98,7 +98,8 @@ def mapped(material: gs.DruckerPrager, trial: FloatArray) -> Return:
 
 
 def deviator(stress: FloatArray) -> FloatArray:
-    return stress - stress[:, :3].mean(axis=1, keepdims=True) * (1, 1, 1, 0)
+    mean = stress[:, :3].mean(axis=1, keepdims=True)
+    return np.asarray(stress - mean * (1, 1, 1, 0))
 
 
 def in_plane(stress: FloatArray) -> FloatArray:
