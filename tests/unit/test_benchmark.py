@@ -48,13 +48,15 @@ def test_rate_counts_points_and_steps(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(benchmark.time, "perf_counter", lambda: float(next(ticks)))
     monkeypatch.setattr(benchmark, "_SECONDS", 0.2)
     measured = benchmark.Case(400).measure()
-    assert measured.median == measured.points * 20  # a fifth of the 100 steps of a second
+    steps = round(0.2 * benchmark._WARM_UP)  # of a repeat, which takes a second here
+    assert measured.median == measured.plain == measured.points * steps
+    assert measured.ratio == 1
 
 
 def test_table_has_a_line_a_measurement() -> None:
-    one = Measurement(23_490, 1, "generic", 12.34e6, 11e6, 13e6, 240.4)
+    one = Measurement(23_490, 1, "generic", 12.34e6, 11e6, 13e6, 5.06e6, 2.44, 240.4)
     lines = benchmark.table([one, one]).splitlines()
     assert len(lines) == 3 and lines[1] == lines[2]
-    for text in ("23,490", "generic", "12.3", "11.0 ... 13.0", "240"):
+    for text in ("23,490", "generic", "12.3", "11.0 ... 13.0", "5.1", "2.44", "240"):
         assert text in lines[1]
     assert one.to_dict()["bytes_per_point"] == 240.4

@@ -169,7 +169,7 @@ def draw(locked: Test, cured: Test) -> Figure:
     curve.legend(loc="lower right")
     for ax, test, title in zip(maps, (locked, cured), ("point", "cell average"), strict=True):
         _map(ax, test, title)
-    figure.colorbar(maps[1].images[0], ax=maps, label="mean stress / c")
+    figure.colorbar(maps[1].images[0], ax=maps, label="mean stress / c", shrink=0.6)
     return figure
 
 

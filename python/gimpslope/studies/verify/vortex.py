@@ -22,6 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullLocator
 
 import gimpslope as gs
 
@@ -213,9 +214,11 @@ def draw(cells: list[int], errors: dict[Shape, FloatArray], finest: dict[Shape, 
         error.loglog(cells, errors[shape] / AMPLITUDE, f"{mark}-", ms=4, label=SHAPES[shape])
     error.loglog(cells, 3 / np.square(cells), "k:", linewidth=0.8, label="second order")
     error.set(xlabel="cells a metre", ylabel="largest RMS error / A (m)")
+    low, high = min(map(np.min, errors.values())), max(map(np.max, errors.values()))
+    error.set_ylim(0.2 * low / AMPLITUDE, 10 * high / AMPLITUDE)
     error.set_xticks(cells, [str(n) for n in cells])
-    error.minorticks_off()
-    error.legend()
+    error.xaxis.set_minor_locator(NullLocator())
+    error.legend(loc="upper right", ncols=2)
     return figure
 
 
