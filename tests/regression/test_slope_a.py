@@ -73,6 +73,19 @@ def test_energy_only_becomes_less(coarse: dict[float, gs.Run]) -> None:
         assert total[-1] < total[0] - run.energy.kinetic[-1]
 
 
+def assert_closed(run: gs.Run) -> None:
+    """No joule is lost but to rounding, and the time step's residue is below 0.5 % of the energy
+    turned over."""
+    rows = run.ledger
+    assert abs(rows.balance - rows.balance[0]).max() < 1e-10 * rows.turned_over
+    assert abs(rows.integration).max() < 0.005 * rows.turned_over
+
+
+def test_every_joule_is_somewhere(coarse: dict[float, gs.Run]) -> None:
+    for run in coarse.values():
+        assert_closed(run)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("reading", "expected"),
@@ -101,7 +114,9 @@ def test_energy_only_becomes_less(coarse: dict[float, gs.Run]) -> None:
     ],
 )
 def test_figures_at_one_tenth(reading: str, expected: dict[str, Any], tmp_path: Path) -> None:
-    summary: dict[str, Any] = slide(tmp_path, reading, 0.1, 10.0).summary
+    run = slide(tmp_path, reading, 0.1, 10.0)
+    assert_closed(run)
+    summary: dict[str, Any] = run.summary
     assert summary["points"] == 23_490
     off = {
         name: (summary[name], value)
