@@ -61,6 +61,7 @@ def _run(options: argparse.Namespace) -> Callable[[], int]:
             courant=options.courant,
             time_step=options.time_step,
             threads=options.threads,
+            volumetric_strain=options.volumetric_strain,
         ),
         duration=options.duration,
     )
@@ -87,8 +88,8 @@ def _run(options: argparse.Namespace) -> Callable[[], int]:
 
 def _make_directory(option: str, path: str) -> None:
     """Make, before any work is done, the directory for what comes of it."""
-    if Path(path).is_file():
-        raise ValueError(f"{option} must be a directory, got the file {path!r}")
+    if not path or Path(path).is_file():
+        raise ValueError(f"{option} must be a directory, got {path!r}")
     Path(path).mkdir(parents=True, exist_ok=True)
 
 
@@ -138,14 +139,18 @@ def _verify(options: argparse.Namespace) -> Callable[[], int]:
     if options.output is not None:
         _make_directory("--output", options.output)
 
-    def announce(problem: verify.Problem) -> None:
-        print(f"{problem.title} ...", file=sys.stderr, flush=True)
-
     def command() -> int:
-        solved = verify.solve(names, full=options.full, announce=announce)
-        print(report.text(solved))
+        solved: list[verify.Solved] = []
+        try:
+            for one in verify.solve(names, full=options.full):
+                solved.append(one)
+                print(report.line(one), file=sys.stderr, flush=True)
+                if options.output is not None:
+                    report.write(solved, options.output, full=options.full)
+        finally:  # what is solved is shown, also when the rest is interrupted
+            if solved:
+                print(report.text(solved))
         if options.output is not None:
-            report.write(solved, options.output, full=options.full)
             print(f"table and figures: {options.output}{os.sep}")
         return 0 if all(one.holds for one in solved) else 1
 
@@ -153,20 +158,19 @@ def _verify(options: argparse.Namespace) -> Callable[[], int]:
 
 
 def _converge(options: argparse.Namespace) -> Callable[[], int]:
-    for cell in convergence.check_cells(options.cells):
-        for reading in options.reading:
-            reference.soil_slope(reading, cell)
-    reference.method(threads=options.threads)
+    settings = {
+        "cells": options.cells,
+        "threads": options.threads,
+        "overwrite": options.overwrite,
+    }
+    for reading in options.reading:
+        convergence.plan(options.output, reading=reading, **settings)
     _make_directory("--output", options.output)
 
     def command() -> int:
         studies = [
             convergence.converge(
-                options.output,
-                reading=reading,
-                cells=options.cells,
-                threads=options.threads,
-                progress=not options.quiet,
+                options.output, reading=reading, progress=not options.quiet, **settings
             )
             for reading in options.reading
         ]
@@ -230,6 +234,12 @@ def _parser() -> argparse.ArgumentParser:
     step = run.add_mutually_exclusive_group()
     step.add_argument("--time-step", type=float, metavar="S", help="fixed, s")
     step.add_argument("--courant", type=float, metavar="C", help="Courant number (default: 0.4)")
+    run.add_argument(
+        "--volumetric-strain",
+        choices=["point", "cell_average"],
+        default="point",
+        help="cell_average keeps soil from locking (default: %(default)s, as in the paper)",
+    )
     run.add_argument("--threads", type=int, default=1, metavar="N", help="(default: 1)")
     run.add_argument("--output", default="soil.h5", metavar="FILE", help="(default: %(default)s)")
     run.add_argument("--overwrite", action="store_true", help="replace an output file that exists")
@@ -273,6 +283,9 @@ def _parser() -> argparse.ArgumentParser:
     finer.add_argument("--threads", type=int, default=1, metavar="N", help="(default: 1)")
     finer.add_argument(
         "--output", default="convergence", metavar="DIR", help="(default: %(default)s)"
+    )
+    finer.add_argument(
+        "--overwrite", action="store_true", help="replace files of other runs in the directory"
     )
     finer.add_argument("--quiet", action="store_true", help="no progress bars")
 

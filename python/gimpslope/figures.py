@@ -133,7 +133,7 @@ def ledger(rows: LedgerRows, ax: Axes | None = None) -> Axes:
     ax.set(xlabel="time since the trigger (s)", ylabel="energy (kJ/m)")
     ax.set_xlim(np.min(rows.time, initial=0.0), np.max(rows.time, initial=0.0) or 1.0)
     handles, labels = ax.get_legend_handles_labels()
-    ax.legend(handles[::-1], labels[::-1], loc="center left", bbox_to_anchor=(1.0, 0.5))
+    ax.legend(handles, labels, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncols=3)
     return ax
 
 

@@ -34,7 +34,8 @@ class Energies(NamedTuple):
 class Solver:
     """Material points and their stepping; `Solver.of(scene, method)` makes one from a scene.
 
-    Arrays go in and come out in the order in which the points were given. The kernel keeps its
+    Arrays go in and come out in the order in which the points were given, as copies: to change one,
+    set it whole. The kernel keeps its
     points sorted by cell: `view` and `numbers` show them as they lie in memory.
 
     A step takes its strains from the velocities at its start, so velocities belong to half a step

@@ -204,6 +204,7 @@ def test_bench_refuses(
 def test_verify(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["verify", "bar", "shear", "--output", "known"]) == 0
     shown = capsys.readouterr()
+    assert "checks hold" in shown.err.splitlines()[0]
     for word in ("problem", "quantity", "expected", "got", "error", "order", "time"):
         assert word in shown.out.splitlines()[0]
     data = json.loads(Path("known/verification.json").read_text())

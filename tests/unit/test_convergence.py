@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import h5py
 import pytest
 
 import gimpslope as gs
@@ -47,10 +48,32 @@ def test_finished_runs_are_kept(folder: Path, study: convergence.Convergence) ->
     assert [q.values for q in again.quantities] == [q.values for q in study.quantities]
 
 
-def test_a_run_of_another_duration_is_not_taken(tmp_path: Path) -> None:
-    for duration in (0.2, 0.3):
-        convergence.converge(tmp_path, cells=(4.0, 2.0, 1.0), duration=duration, progress=False)
-    assert gs.open(tmp_path / "soil_identified_4.h5").energy.time[-1] == pytest.approx(0.3)
+def test_another_run_is_neither_taken_nor_replaced_unless_told(tmp_path: Path) -> None:
+    small = {"cells": (4.0, 2.0, 1.0), "progress": False}
+    convergence.converge(tmp_path, duration=0.2, **small)
+    with pytest.raises(FileExistsError, match=r"soil_identified_4\.h5"):
+        convergence.converge(tmp_path, duration=0.3, **small)
+    convergence.converge(tmp_path, duration=0.3, overwrite=True, **small)
+    file = tmp_path / "soil_identified_4.h5"
+    assert gs.open(file).energy.time[-1] == pytest.approx(0.3)
+
+    with h5py.File(file, "r+") as run:
+        run.attrs["gimpslope_version"] = "0.0.1"
+    with pytest.raises(FileExistsError, match="another version"):
+        convergence.converge(tmp_path, duration=0.3, **small)
+    file.write_text("notes")
+    with pytest.raises(FileExistsError, match="something else"):
+        convergence.converge(tmp_path, duration=0.3, **small)
+
+
+def test_a_run_that_was_stopped_starts_again(tmp_path: Path) -> None:
+    small = {"cells": (4.0, 2.0, 1.0), "duration": 0.2, "progress": False}
+    convergence.converge(tmp_path, **small)
+    file = tmp_path / "soil_identified_4.h5"
+    with h5py.File(file, "r+") as run:
+        run.attrs["status"] = "interrupted"
+    convergence.converge(tmp_path, **small)
+    assert gs.open(file).status == "finished"
 
 
 def test_written(tmp_path: Path, study: convergence.Convergence) -> None:

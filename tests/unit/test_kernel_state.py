@@ -6,6 +6,7 @@ import gc
 import signal
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -109,6 +110,15 @@ def test_the_interpreter_runs_while_stepping() -> None:
     assert ticks[0] > 30
 
 
+@pytest.fixture
+def heeds_interrupts() -> Iterator[None]:
+    """Ctrl-C is an error here, also where it was ignored, as in the background of a shell."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("heeds_interrupts")
 def test_interrupt_stops_within_a_second() -> None:
     stepped = solver(sliding(40, 40))
     timer = threading.Timer(0.3, signal.raise_signal, [signal.SIGINT])

@@ -18,7 +18,9 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import _check
+from ..method import Method
 from ..run import Run
+from ..scene import Scene
 from ..simulation import simulate
 from . import plain_data, reference
 from .richardson import Extrapolation, extrapolate
@@ -27,6 +29,14 @@ CELLS = (0.4, 0.2, 0.1, 0.05)
 DURATION = 10.0  # s
 _NEAR_PEAK = 0.05  # s
 _DPI = 72
+_LEGEND = (
+    "*Orders* are those of each three grids in a row, a dash where their two changes differ in "
+    "sign. What the last three grids do is said at the end of a row: *converges* with an order "
+    "between 0.5 and 2.1, and then the limit by Richardson's extrapolation with its uncertainty "
+    "(1.25 times the extrapolated difference); *order not settled* outside of that (three times "
+    "the spread); *oscillates*; or *diverges*, the last change being the larger one. Shares are "
+    "parts of the drop in potential energy."
+)
 
 
 @dataclass(frozen=True)
@@ -66,36 +76,43 @@ def converge(
     cells: Sequence[float] = CELLS,
     duration: float = DURATION,
     threads: int = 1,
+    overwrite: bool = False,
     progress: bool = True,
 ) -> Convergence:
     """Run slope A on each grid, and extrapolate.
 
     Parameters
     ----------
-    directory : for the run files, made if need be. A finished run of the same scene, method and
-        duration that is there already is taken as it is
+    directory : for the run files, made if need be. A finished run of the same scene, method,
+        duration and version that is there already is taken as it is
     reading : "identified" or "literal"
     cells : m, each half of the one before, at least three
     duration : of the slide, s
     threads : of the solver
+    overwrite : replace files of those names that hold other runs
     progress : show progress bars
 
     Raises
     ------
-    ValueError
-        If there are too few cells, or one is not half of the one before.
+    TypeError, ValueError
+        If a parameter is refused, or there are too few cells, or one is not half of the one before.
+    FileExistsError
+        If a file of those names holds something else and may not be replaced; nothing is run then.
     """
-    grids = check_cells(cells)
-    folder = Path(directory)
-    folder.mkdir(parents=True, exist_ok=True)
-    runs = [
-        _run(folder / f"soil_{reading}_{cell:g}.h5", reading, cell, duration, threads, progress)
-        for cell in grids
-    ]
+    grids = plan(
+        directory,
+        reading=reading,
+        cells=cells,
+        duration=duration,
+        threads=threads,
+        overwrite=overwrite,
+    )
+    Path(directory).mkdir(parents=True, exist_ok=True)
+    runs = [grid.found or grid.run(progress) for grid in grids]
     measured = [_measure(run) for run in runs]
     return Convergence(
         reading=reading,
-        cells=grids,
+        cells=tuple(grid.scene.cell for grid in grids),
         points=tuple(len(run.points) for run in runs),
         seconds=tuple(float(run.attributes["timing"]["wall_seconds"]) for run in runs),
         quantities=tuple(
@@ -106,34 +123,76 @@ def converge(
     )
 
 
+@dataclass(frozen=True)
+class Grid:
+    """A run to be made, or found made already."""
+
+    path: Path
+    scene: Scene
+    method: Method
+    duration: float
+    found: Run | None
+
+    def run(self, progress: bool) -> Run:
+        """Make it."""
+        return simulate(
+            self.scene,
+            self.duration,
+            method=self.method,
+            output=self.path,
+            overwrite=True,
+            snapshot_interval=self.duration,
+            progress=progress,
+        )
+
+
+def plan(
+    directory: str | PathLike[str],
+    *,
+    reading: str = "identified",
+    cells: Sequence[float] = CELLS,
+    duration: float = DURATION,
+    threads: int = 1,
+    overwrite: bool = False,
+) -> list[Grid]:
+    """What `converge` would run, and what it would find; raises as it does, and writes nothing."""
+    method = reference.method(reading, threads=threads)
+    duration = _check.positive("duration", duration)
+    grids = []
+    for cell in check_cells(cells):
+        path = Path(directory) / f"soil_{reading}_{cell:g}.h5"
+        scene = reference.soil_slope(reading, cell)
+        grids.append(Grid(path, scene, method, duration, None))
+    return [replace(grid, found=_found(grid, overwrite)) for grid in grids]
+
+
+def _found(grid: Grid, overwrite: bool) -> Run | None:
+    """The finished run in the file, or None if it is to be made (anew)."""
+    if not grid.path.exists():
+        return None
+    try:
+        run = Run(grid.path)
+        same_method = replace(run.method, threads=grid.method.threads) == grid.method
+        same = run.scene == grid.scene and run.stages.slide.duration == grid.duration
+        same_version = run.attributes["gimpslope_version"] == version("gimpslope")
+    except ValueError:
+        run, same, same_method, same_version = None, False, False, False
+    if run is not None and same and same_method and same_version:
+        return run if run.status == "finished" else None
+    if not overwrite:
+        raise FileExistsError(
+            f"output must be a directory without other runs unless overwrite is set, got "
+            f"{str(grid.path)!r}, which holds something else or is of another version"
+        )
+    return None
+
+
 def check_cells(cells: Sequence[float]) -> tuple[float, ...]:
     """The cells as numbers; `ValueError` unless there are three, each half of the one before."""
     grids = tuple(_check.positive("cells", cell) for cell in cells)
     if len(grids) < 3 or not all(math.isclose(a, 2 * b) for a, b in pairwise(grids)):
         raise ValueError(f"cells must be three or more, each half of the one before, got {grids}")
     return grids
-
-
-def _run(
-    path: Path, reading: str, cell: float, duration: float, threads: int, progress: bool
-) -> Run:
-    scene = reference.soil_slope(reading, cell)
-    method = reference.method(reading, threads=threads)
-    if path.exists():
-        found = Run(path)
-        same_method = replace(found.method, threads=threads) == method
-        same_slide = found.scene == scene and found.stages.slide.duration == duration
-        if found.status == "finished" and same_method and same_slide:
-            return found
-    return simulate(
-        scene,
-        duration,
-        method=method,
-        output=path,
-        overwrite=True,
-        snapshot_interval=duration,
-        progress=progress,
-    )
 
 
 def _measure(run: Run) -> dict[tuple[str, str], float]:
@@ -151,6 +210,7 @@ def _measure(run: Run) -> dict[tuple[str, str], float]:
         ("drop of the potential energy", "kJ/m"): ledger.turned_over / 1e3,
         ("share of plastic work", "1"): shares["plastic"],
         ("share of the transfer loss", "1"): shares["transfer"],
+        ("residue of the time step, share", "1"): shares["integration"],
         ("plastic zone, share of the soil", "1"): float(run.plastic_zone().mean()),
         ("mean plastic strain", "1"): float(run.final.plastic_strain.mean()),
         ("largest plastic strain", "1"): float(run.final.plastic_strain.max()),

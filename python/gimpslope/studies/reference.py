@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from ..materials import Cone, DruckerPrager
-from ..method import Method
+from ..method import Method, VolumetricStrain
 from ..outline import Outline
 from ..scene import Scene
 from ..walls import Coulomb, Fixed, Roller, Walls
@@ -79,6 +79,7 @@ def method(
     time_step: float | None = None,
     threads: int = 1,
     ledger: bool = True,
+    volumetric_strain: VolumetricStrain = "point",
 ) -> Method:
     """uGIMP, USF and the reading's viscosity; a Courant number, or a time step in s."""
     return Method(
@@ -87,6 +88,7 @@ def method(
         time_step=time_step,
         threads=threads,
         ledger=ledger,
+        volumetric_strain=volumetric_strain,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 
@@ -54,19 +54,13 @@ def problem(name: str) -> Problem:
     return found
 
 
-def solve(
-    names: Sequence[str] = NAMES,
-    *,
-    full: bool = False,
-    announce: Callable[[Problem], None] | None = None,
-) -> list[Solved]:
-    """Solve problems, by name, one after the other.
+def solve(names: Sequence[str] = NAMES, *, full: bool = False) -> Iterator[Solved]:
+    """Solve problems, by name, one after the other; each is given as soon as it is solved.
 
     Parameters
     ----------
     names : of the problems, each in `NAMES`
     full : with the finest grids and all cases, in minutes; otherwise quickly, in seconds
-    announce : called with each problem before it is solved
 
     Raises
     ------
@@ -74,11 +68,10 @@ def solve(
         If there is no problem of a name; none is solved then.
     """
     chosen = [problem(name) for name in dict.fromkeys(names)]
-    solved = []
-    for one in chosen:
-        if announce is not None:
-            announce(one)
-        start = time.perf_counter()
-        outcome = one.run(full)
-        solved.append(Solved(one, outcome, time.perf_counter() - start))
-    return solved
+    return (_solve(one, full) for one in chosen)
+
+
+def _solve(one: Problem, full: bool) -> Solved:
+    start = time.perf_counter()
+    outcome = one.run(full)
+    return Solved(one, outcome, time.perf_counter() - start)

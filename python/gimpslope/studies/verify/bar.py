@@ -16,8 +16,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..._check import FloatArray
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 LENGTH, YOUNG, DENSITY, SPEED = 25.0, 100.0, 1.0, 0.1  # m, Pa, kg/m3, m/s
 CELLS = 50

@@ -1,8 +1,7 @@
 """A cantilever is let go under its own weight, bends by 90 degrees, and swings back.
 
 Known are finite elements and CPDI (Sadeghirad, Brannon & Burghardt 2011, IJNME 86, 1435-1456) and
-the uGIMP of a later code, all with a neo-Hookean law, from which the Jaumann rate differs by 1 %
-in finite elements. Their tip is the lower corner of the free end. It swings to x < 0 below the
+the uGIMP of a later code, all with a neo-Hookean law, not the Jaumann rate. Their tip is the lower corner of the free end. It swings to x < 0 below the
 clamp, where a wall of the grid, which is as high as the grid, would hold it: the beam is clamped to
 a stiff block instead, and the wall is behind that.
 
@@ -22,9 +21,8 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..._check import FloatArray
 from ...method import Shape
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 LENGTH, HEIGHT, GRAVITY = 4.0, 1.0, 10.0  # m, m, m/s2
 BEAM = gs.Elastic(density=1050.0, young=1e6, poisson=0.3)

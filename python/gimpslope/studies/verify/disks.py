@@ -19,8 +19,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..._check import FloatArray
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 RADIUS, SPEED = 0.2, 0.1  # m, m/s along each axis
 CENTRES = np.array([(0.2, 0.2), (0.8, 0.8)])  # m

@@ -21,8 +21,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..._check import FloatArray
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 COHESION = 10e3  # Pa
 CLAY = gs.DruckerPrager(2000.0, 300e6, 0.49, friction=0, cohesion=COHESION, cone="plane_strain")
@@ -169,7 +168,8 @@ def draw(locked: Test, cured: Test) -> Figure:
     curve.legend(loc="lower right")
     for ax, test, title in zip(maps, (locked, cured), ("point", "cell average"), strict=True):
         _map(ax, test, title)
-    figure.colorbar(maps[1].images[0], ax=maps, label="mean stress / c", shrink=0.6)
+    image = maps[1].images[0]
+    figure.colorbar(image, ax=maps, label="mean stress / c", shrink=0.6, extend="both")
     return figure
 
 
@@ -178,7 +178,7 @@ def _map(ax: Axes, test: Test, title: str) -> None:
     columns, rows = np.floor(2 * test.places / test.cell).astype(int).T
     pixels = np.full((rows.max() + 1, columns.max() + 1), np.nan)
     pixels[rows, columns] = test.mean_stress
-    extent = (0.0, columns.max() * test.cell / 2, -DEPTH, 0.0)
+    extent = (0.0, (columns.max() + 1) * test.cell / 2, -DEPTH, 0.0)
     ax.imshow(pixels, origin="lower", extent=extent, vmin=-8, vmax=2, cmap="viridis")
     ax.plot([0, HALF_WIDTH], [0.05, 0.05], "k-", linewidth=3)
     ax.set(title=title, xlabel="x (m)", ylabel="y (m)")

@@ -19,9 +19,8 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..._check import FloatArray
 from ...method import DomainUpdate, Shape
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 MATERIAL = gs.Elastic(density=1000.0, young=1e7, poisson=0.3)
 SHEAR, LAME = MATERIAL.shear_modulus, MATERIAL.bulk_modulus - 2 / 3 * MATERIAL.shear_modulus  # Pa

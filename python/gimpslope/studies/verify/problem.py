@@ -7,7 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Self
 
+import numpy as np
+import numpy.typing as npt
 from matplotlib.figure import Figure
+
+FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -36,6 +36,13 @@ def text(solved: Sequence[Solved]) -> str:
     return "\n".join([*lines, "", _verdict(solved)])
 
 
+def line(one: Solved) -> str:
+    """A problem in one line."""
+    held = sum(check.holds for check in one.outcome.checks)
+    checks = len(one.outcome.checks)
+    return f"{one.problem.title}: {held} of {checks} checks hold, {one.seconds:.1f} s"
+
+
 def markdown(solved: Sequence[Solved], *, full: bool) -> str:
     """The table with the reason of each tolerance, and the figures where they lie beside it."""
     kind = "full" if full else "quick"

@@ -26,9 +26,8 @@ from matplotlib.ticker import NullLocator
 
 import gimpslope as gs
 
-from ..._check import FloatArray
 from ...method import Shape
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 MATERIAL = gs.Elastic(density=1000.0, young=1e6, poisson=0.3)
 SHEAR = MATERIAL.shear_modulus  # G, Pa

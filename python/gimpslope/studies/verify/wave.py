@@ -20,8 +20,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..._check import FloatArray
-from .problem import Check, Outcome, Problem
+from .problem import Check, FloatArray, Outcome, Problem
 
 YOUNG, DENSITY = 1e6, 1000.0  # Pa, kg/m3
 WAVE_SPEED = (YOUNG / DENSITY) ** 0.5  # m/s
