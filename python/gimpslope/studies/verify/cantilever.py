@@ -1,9 +1,10 @@
 """A cantilever is let go under its own weight, bends by 90 degrees, and swings back.
 
 Known are finite elements and CPDI (Sadeghirad, Brannon & Burghardt 2011, IJNME 86, 1435-1456) and
-the uGIMP of a later code, all with a neo-Hookean law, not the Jaumann rate. Their tip is the lower corner of the free end. It swings to x < 0 below the
-clamp, where a wall of the grid, which is as high as the grid, would hold it: the beam is clamped to
-a stiff block instead, and the wall is behind that.
+the uGIMP of a later code, all with a neo-Hookean law, not the Jaumann rate. Their tip is the lower
+corner of the free end. It swings to x < 0 below the clamp, where a wall of the grid, which is as
+high as the grid, would hold it: the beam is clamped to a stiff block instead, and the wall is
+behind that.
 
 At the root the upper side stretches to twice its length. The domains of GIMP, squares that never
 turn, leave gaps there: with 3 x 3 points a cell the beam bends as it should but does not swing all
