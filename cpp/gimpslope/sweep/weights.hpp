@@ -27,7 +27,7 @@ void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
   const double* half_length = kOwnDomain ? view.points.half_length + 2 * begin : nullptr;
   const double per_cell = 1.0 / grid.cell;
   const double left = grid.left, bottom = grid.bottom;
-  const int stride = grid.stride;
+  const double stride = grid.stride;
   const double common = Shape::extended ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::extended ? 1.0 / common : 0.0;
 #pragma omp simd
@@ -42,8 +42,8 @@ void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
     }
     const double x = (motion[4 * k] - left) * per_cell - 0.5 * width_x;
     const double y = (motion[4 * k + 1] - bottom) * per_cell - 0.5 * width_y;
-    const int column = static_cast<int>(x), row = static_cast<int>(y);
-    out.first[k] = row * stride + column;
+    const double column = static_cast<int>(x), row = static_cast<int>(y);
+    out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
 
     double w[Shape::nodes], d[Shape::nodes];
     Shape::evaluate(x - column, width_x, inverse_x, w, d);
