@@ -36,17 +36,19 @@ def undrawn(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
 def test_run_with_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     Path("all.h5").write_text("an older run")
     words = "--reading literal --cell 0.8 --duration 0.3 --courant 0.3 --threads 2 --output all.h5"
-    more = "--overwrite --summary all.json --figures maps --quiet"
+    more = "--overwrite --summary all.json --figures maps --quiet --volumetric-strain cell_average"
     assert cli.main(["run", "soil", *words.split(), *more.split()]) == 0
     run = gs.open("all.h5")
     assert run.status == "finished"
     assert run.scene == reference.soil_slope("literal", 0.8)
-    assert run.method == reference.method("literal", courant=0.3, threads=2)
+    assert run.method == reference.method(
+        "literal", courant=0.3, threads=2, volumetric_strain="cell_average"
+    )
     assert run.stages == gs.Stages(slide=gs.Slide(0.3))
     assert run.attributes["threads"] == 2
     assert json.loads(Path("all.json").read_text()) == run.summary
     drawn = {path.name for path in Path("maps").iterdir()}
-    assert {"kinetic_energy.png", "speed.png", "plastic_zone.png"} <= drawn
+    assert {"kinetic_energy.png", "ledger.png", "speed.png", "plastic_zone.png"} <= drawn
     assert {"displacement.png", "displacement_bars.png"} <= drawn
     shown = capsys.readouterr()
     assert "reading literal" in shown.out and "paper" in shown.out
