@@ -4,10 +4,8 @@
 // with the forces f and the walls' reactions to v+. Let vm = (v' + v+) / 2, dv = v+ - v', the
 // impulse of the walls j = m dv - dt f, and w(s) the elastic energy a volume. Then
 //
-//   friction     m (v-^2 - v'^2) / 2 - j . vm, of components along a Coulomb wall that no other
-//   wall
-//                stops
-//   impact       the same of all other components
+//   friction     m (v-^2 - v'^2) / 2 - j . vm, of components along a Coulomb wall
+//   impact       the same of all others, and of those that another wall stops
 //   damping      -dt (local damping force) . vm, and what kinetic damping takes
 //   external     dt (body force, less the part of gravity that a ramp holds back) . vm
 //   transfer     m (v+^2 - v-^2) / 2 of the nodes less the points' gain of kinetic energy

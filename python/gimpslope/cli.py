@@ -146,6 +146,7 @@ def _verify(options: argparse.Namespace) -> Callable[[], int]:
                 solved.append(one)
                 print(report.line(one), file=sys.stderr, flush=True)
                 if options.output is not None:
+                    report.draw(one, options.output)
                     report.write(solved, options.output, full=options.full)
         finally:  # what is solved is shown, also when the rest is interrupted
             if solved:
@@ -158,22 +159,20 @@ def _verify(options: argparse.Namespace) -> Callable[[], int]:
 
 
 def _converge(options: argparse.Namespace) -> Callable[[], int]:
-    settings = {
-        "cells": options.cells,
-        "threads": options.threads,
-        "overwrite": options.overwrite,
-    }
-    for reading in options.reading:
-        convergence.plan(options.output, reading=reading, **settings)
+    plans = [
+        convergence.plan(
+            options.output,
+            reading=reading,
+            cells=options.cells,
+            threads=options.threads,
+            overwrite=options.overwrite,
+        )
+        for reading in options.reading
+    ]
     _make_directory("--output", options.output)
 
     def command() -> int:
-        studies = [
-            convergence.converge(
-                options.output, reading=reading, progress=not options.quiet, **settings
-            )
-            for reading in options.reading
-        ]
+        studies = [convergence.converge(grids, progress=not options.quiet) for grids in plans]
         print("\n".join(convergence.markdown(study) for study in studies))
         convergence.write(studies, options.output)
         print(f"runs, table and figures: {options.output}{os.sep}")

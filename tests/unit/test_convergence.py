@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import h5py
 import pytest
@@ -14,6 +15,10 @@ from gimpslope.studies import convergence, reference
 CELLS = (2.0, 1.0, 0.5)
 
 
+def study_in(folder: Path, **options: Any) -> convergence.Convergence:
+    return convergence.converge(convergence.plan(folder, **options), progress=False)
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("convergence")
@@ -21,7 +26,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def study(folder: Path) -> convergence.Convergence:
-    return convergence.converge(folder, cells=CELLS, duration=3.0, progress=False)
+    return study_in(folder, cells=CELLS, duration=3.0)
 
 
 def test_values_are_those_of_the_runs(folder: Path, study: convergence.Convergence) -> None:
@@ -43,36 +48,36 @@ def test_values_are_those_of_the_runs(folder: Path, study: convergence.Convergen
 def test_finished_runs_are_kept(folder: Path, study: convergence.Convergence) -> None:
     files = [folder / f"soil_identified_{cell:g}.h5" for cell in CELLS]
     made = [file.stat().st_mtime_ns for file in files]
-    again = convergence.converge(folder, cells=CELLS, duration=3.0, threads=2, progress=False)
+    again = study_in(folder, cells=CELLS, duration=3.0, threads=2)
     assert [file.stat().st_mtime_ns for file in files] == made
     assert [q.values for q in again.quantities] == [q.values for q in study.quantities]
 
 
 def test_another_run_is_neither_taken_nor_replaced_unless_told(tmp_path: Path) -> None:
-    small = {"cells": (4.0, 2.0, 1.0), "progress": False}
-    convergence.converge(tmp_path, duration=0.2, **small)
+    small = {"cells": (4.0, 2.0, 1.0)}
+    study_in(tmp_path, duration=0.2, **small)
     with pytest.raises(FileExistsError, match=r"soil_identified_4\.h5"):
-        convergence.converge(tmp_path, duration=0.3, **small)
-    convergence.converge(tmp_path, duration=0.3, overwrite=True, **small)
+        study_in(tmp_path, duration=0.3, **small)
+    study_in(tmp_path, duration=0.3, overwrite=True, **small)
     file = tmp_path / "soil_identified_4.h5"
     assert gs.open(file).energy.time[-1] == pytest.approx(0.3)
 
     with h5py.File(file, "r+") as run:
         run.attrs["gimpslope_version"] = "0.0.1"
     with pytest.raises(FileExistsError, match="another version"):
-        convergence.converge(tmp_path, duration=0.3, **small)
+        study_in(tmp_path, duration=0.3, **small)
     file.write_text("notes")
     with pytest.raises(FileExistsError, match="something else"):
-        convergence.converge(tmp_path, duration=0.3, **small)
+        study_in(tmp_path, duration=0.3, **small)
 
 
 def test_a_run_that_was_stopped_starts_again(tmp_path: Path) -> None:
-    small = {"cells": (4.0, 2.0, 1.0), "duration": 0.2, "progress": False}
-    convergence.converge(tmp_path, **small)
+    small = {"cells": (4.0, 2.0, 1.0), "duration": 0.2}
+    study_in(tmp_path, **small)
     file = tmp_path / "soil_identified_4.h5"
     with h5py.File(file, "r+") as run:
         run.attrs["status"] = "interrupted"
-    convergence.converge(tmp_path, **small)
+    study_in(tmp_path, **small)
     assert gs.open(file).status == "finished"
 
 
@@ -88,4 +93,4 @@ def test_written(tmp_path: Path, study: convergence.Convergence) -> None:
 @pytest.mark.parametrize("cells", [(0.4, 0.2), (0.4, 0.2, 0.15), (0.1, 0.2, 0.4)])
 def test_refused(tmp_path: Path, cells: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="cells must be three or more"):
-        convergence.converge(tmp_path, cells=cells)
+        convergence.plan(tmp_path, cells=cells)

@@ -13,6 +13,8 @@ from kernel_scene import sliding, solver
 import gimpslope as gs
 from gimpslope._check import FloatArray
 from gimpslope.figures import ledger as draw_ledger
+from gimpslope.io import hdf5
+from gimpslope.ledger import SINKS
 
 G = 9.81
 ROCK = gs.Elastic(density=2000, young=1e6, poisson=0.3)
@@ -256,6 +258,14 @@ def test_refused_without_a_ledger() -> None:
     scene = gs.Scene(rectangle(1.0, 1.0), ROCK, cell=0.5)
     with pytest.raises(ValueError, match="ledger"):
         _ = gs.Solver.of(scene).ledger
+
+
+def test_entries_have_the_same_names_everywhere() -> None:
+    """In the kernel, in Python and in the run file."""
+    names = gs.Ledger._fields
+    assert tuple(solver(sliding(8, 8), ledger=True).ledger()) == names
+    assert tuple(hdf5.LEDGER) == names
+    assert set(names) == {*SINKS, "external"}
 
 
 # In a run

@@ -65,9 +65,9 @@ class Case:
         scene = reference.soil_slope(cell=0.1 * (23_490 / self.points) ** 0.5)
         points = _displaced(scene.points, scene.spacing / 4)
         solver, plain = self._solver(scene, points), self._plain(scene, points)
+        steps, plain_steps = _steps(solver.advance), _steps(plain.advance)
         pairs = [
-            (_rate(solver.advance, solver_steps), _rate(plain.advance, plain_steps))
-            for solver_steps, plain_steps in [(_steps(solver.advance), _steps(plain.advance))]
+            (_rate(solver.advance, steps), _rate(plain.advance, plain_steps))
             for _ in range(_REPEATS)
         ]
         rates = [len(points) * fast for fast, _ in pairs]

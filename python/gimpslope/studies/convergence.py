@@ -69,73 +69,20 @@ class Convergence:
     quantities: tuple[Quantity, ...]
 
 
-def converge(
-    directory: str | PathLike[str],
-    *,
-    reading: str = "identified",
-    cells: Sequence[float] = CELLS,
-    duration: float = DURATION,
-    threads: int = 1,
-    overwrite: bool = False,
-    progress: bool = True,
-) -> Convergence:
-    """Run slope A on each grid, and extrapolate.
-
-    Parameters
-    ----------
-    directory : for the run files, made if need be. A finished run of the same scene, method,
-        duration and version that is there already is taken as it is
-    reading : "identified" or "literal"
-    cells : m, each half of the one before, at least three
-    duration : of the slide, s
-    threads : of the solver
-    overwrite : replace files of those names that hold other runs
-    progress : show progress bars
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a parameter is refused, or there are too few cells, or one is not half of the one before.
-    FileExistsError
-        If a file of those names holds something else and may not be replaced; nothing is run then.
-    """
-    grids = plan(
-        directory,
-        reading=reading,
-        cells=cells,
-        duration=duration,
-        threads=threads,
-        overwrite=overwrite,
-    )
-    Path(directory).mkdir(parents=True, exist_ok=True)
-    runs = [grid.found or grid.run(progress) for grid in grids]
-    measured = [_measure(run) for run in runs]
-    return Convergence(
-        reading=reading,
-        cells=tuple(grid.scene.cell for grid in grids),
-        points=tuple(len(run.points) for run in runs),
-        seconds=tuple(float(run.attributes["timing"]["wall_seconds"]) for run in runs),
-        quantities=tuple(
-            Quantity(title, unit, values, extrapolate(values))
-            for title, unit in measured[0]
-            for values in [tuple(one[title, unit] for one in measured)]
-        ),
-    )
-
-
 @dataclass(frozen=True)
 class Grid:
-    """A run to be made, or found made already."""
+    """A run of slope A to be made, or found made already."""
 
+    reading: str
     path: Path
     scene: Scene
     method: Method
     duration: float
-    found: Run | None
+    found: Run | None = None
 
     def run(self, progress: bool) -> Run:
-        """Make it."""
-        return simulate(
+        """The run that was found, or a new one."""
+        return self.found or simulate(
             self.scene,
             self.duration,
             method=self.method,
@@ -155,29 +102,60 @@ def plan(
     threads: int = 1,
     overwrite: bool = False,
 ) -> list[Grid]:
-    """What `converge` would run, and what it would find; raises as it does, and writes nothing."""
+    """The runs that a study needs, and those that are there already; writes nothing.
+
+    Parameters
+    ----------
+    directory : for the run files. A finished run of the same scene, method, duration and version
+        that is there already is taken as it is
+    reading : "identified" or "literal"
+    cells : m, each half of the one before, at least three
+    duration : of the slide, s
+    threads : of the solver
+    overwrite : replace files of those names that hold other runs
+
+    Raises
+    ------
+    TypeError, ValueError
+        If a parameter is refused, or there are too few cells, or one is not half of the one before.
+    FileExistsError
+        If a file of those names holds something else and may not be replaced.
+    """
     method = reference.method(reading, threads=threads)
     duration = _check.positive("duration", duration)
     grids = []
-    for cell in check_cells(cells):
+    for cell in _check_cells(cells):
         path = Path(directory) / f"soil_{reading}_{cell:g}.h5"
-        scene = reference.soil_slope(reading, cell)
-        grids.append(Grid(path, scene, method, duration, None))
+        grids.append(Grid(reading, path, reference.soil_slope(reading, cell), method, duration))
     return [replace(grid, found=_found(grid, overwrite)) for grid in grids]
+
+
+def converge(grids: Sequence[Grid], *, progress: bool = True) -> Convergence:
+    """Run what was planned, and extrapolate. Directories are made if need be; raises as `simulate`
+    does."""
+    for grid in grids:
+        grid.path.parent.mkdir(parents=True, exist_ok=True)
+    runs = [grid.run(progress) for grid in grids]
+    measured = [_measure(run) for run in runs]
+    return Convergence(
+        reading=grids[0].reading,
+        cells=tuple(grid.scene.cell for grid in grids),
+        points=tuple(len(run.points) for run in runs),
+        seconds=tuple(float(run.attributes["timing"]["wall_seconds"]) for run in runs),
+        quantities=tuple(
+            Quantity(title, unit, values, extrapolate(values))
+            for title, unit in measured[0]
+            for values in [tuple(one[title, unit] for one in measured)]
+        ),
+    )
 
 
 def _found(grid: Grid, overwrite: bool) -> Run | None:
     """The finished run in the file, or None if it is to be made (anew)."""
     if not grid.path.exists():
         return None
-    try:
+    if _same(grid):
         run = Run(grid.path)
-        same_method = replace(run.method, threads=grid.method.threads) == grid.method
-        same = run.scene == grid.scene and run.stages.slide.duration == grid.duration
-        same_version = run.attributes["gimpslope_version"] == version("gimpslope")
-    except ValueError:
-        run, same, same_method, same_version = None, False, False, False
-    if run is not None and same and same_method and same_version:
         return run if run.status == "finished" else None
     if not overwrite:
         raise FileExistsError(
@@ -187,7 +165,21 @@ def _found(grid: Grid, overwrite: bool) -> Run | None:
     return None
 
 
-def check_cells(cells: Sequence[float]) -> tuple[float, ...]:
+def _same(grid: Grid) -> bool:
+    """Whether the file holds this run, made by this version."""
+    try:
+        run = Run(grid.path)
+        return (
+            run.scene == grid.scene
+            and replace(run.method, threads=grid.method.threads) == grid.method
+            and run.stages.slide.duration == grid.duration
+            and run.attributes["gimpslope_version"] == version("gimpslope")
+        )
+    except ValueError:
+        return False
+
+
+def _check_cells(cells: Sequence[float]) -> tuple[float, ...]:
     """The cells as numbers; `ValueError` unless there are three, each half of the one before."""
     grids = tuple(_check.positive("cells", cell) for cell in cells)
     if len(grids) < 3 or not all(math.isclose(a, 2 * b) for a, b in pairwise(grids)):

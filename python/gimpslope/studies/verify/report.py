@@ -88,13 +88,14 @@ def data(solved: Sequence[Solved], *, full: bool) -> dict[str, Any]:
     }
 
 
+def draw(one: Solved, directory: str | PathLike[str]) -> None:
+    """Write the picture of a problem into a directory."""
+    one.outcome.figure.savefig(Path(directory) / _picture(one), dpi=_DPI)
+
+
 def write(solved: Sequence[Solved], directory: str | PathLike[str], *, full: bool) -> None:
-    """Write verification.md, verification.json and a picture a problem into a directory, which is
-    made if it does not exist."""
+    """Write verification.md and verification.json into a directory."""
     folder = Path(directory)
-    folder.mkdir(parents=True, exist_ok=True)
-    for one in solved:
-        one.outcome.figure.savefig(folder / _picture(one), dpi=_DPI)
     (folder / "verification.md").write_text(markdown(solved, full=full))
     (folder / "verification.json").write_text(plain_data.dumps(data(solved, full=full)))
 
