@@ -249,7 +249,8 @@ def figure(study: Convergence) -> Figure:
     columns = 4
     rows = math.ceil(len(study.quantities) / columns)
     made = Figure(figsize=(3.0 * columns, 2.4 * rows), layout="constrained")
-    for quantity, ax in zip(study.quantities, made.subplots(rows, columns).flat, strict=False):
+    for place, quantity in enumerate(study.quantities, start=1):
+        ax = made.add_subplot(rows, columns, place)
         found = quantity.extrapolation
         ax.plot(study.cells, quantity.values, "o-", color="C0", markersize=4)
         if not math.isnan(found.limit):
