@@ -184,7 +184,10 @@ def _converge(options: argparse.Namespace) -> Callable[[], int]:
 def _bench(options: argparse.Namespace) -> Callable[[], int]:
     _check_file("--json", options.json)
     cases = [
-        benchmark.Case(points, threads) for points in options.points for threads in options.threads
+        benchmark.Case(points, threads, ledger)
+        for points in options.points
+        for threads in options.threads
+        for ledger in ((False, True) if options.ledger else (False,))
     ]
 
     def command() -> int:
@@ -295,6 +298,9 @@ def _parser() -> argparse.ArgumentParser:
     )
     bench.add_argument(
         "--threads", type=int, nargs="+", default=[1], metavar="N", help="(default: 1)"
+    )
+    bench.add_argument(
+        "--ledger", action="store_true", help="measure with the energy ledger as well"
     )
     bench.add_argument("--json", metavar="FILE", help="write the measurements as JSON")
 

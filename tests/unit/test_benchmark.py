@@ -54,9 +54,9 @@ def test_rate_counts_points_and_steps(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_table_has_a_line_a_measurement() -> None:
-    one = Measurement(23_490, 1, "generic", 12.34e6, 11e6, 13e6, 5.06e6, 2.44, 240.4)
+    one = Measurement(23_490, 1, True, "generic", 12.34e6, 11e6, 13e6, 5.06e6, 2.44, 240.4)
     lines = benchmark.table([one, one]).splitlines()
     assert len(lines) == 3 and lines[1] == lines[2]
-    for text in ("23,490", "generic", "12.3", "11.0 ... 13.0", "5.1", "2.44", "240"):
+    for text in ("23,490", "generic", "12.3", "11.0 ... 13.0", "5.1", "2.44", "240", " on "):
         assert text in lines[1]
     assert one.to_dict()["bytes_per_point"] == 240.4

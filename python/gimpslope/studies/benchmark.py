@@ -31,6 +31,7 @@ class Measurement:
 
     points: int
     threads: int
+    ledger: bool
     instruction_set: str
     median: float
     slowest: float
@@ -54,11 +55,13 @@ class Case:
 
     points: int = 23_490
     threads: int = 1
+    ledger: bool = False
     instruction_set: str = ""
 
     def __post_init__(self) -> None:
         _check.whole("points", self.points, 10)
         _check.whole("threads", self.threads, 1)
+        _check.flag("ledger", self.ledger)
 
     def measure(self) -> Measurement:
         """Step the slope and time it."""
@@ -74,6 +77,7 @@ class Case:
         return Measurement(
             points=len(points),
             threads=solver.threads,
+            ledger=self.ledger,
             instruction_set=solver.instruction_set,
             median=statistics.median(rates),
             slowest=min(rates),
@@ -91,7 +95,7 @@ class Case:
             walls=scene.walls,
             wall_positions=scene.wall_positions,
             gravity=(0.0, -scene.gravity),
-            method=reference.method(threads=self.threads, ledger=False),
+            method=reference.method(threads=self.threads, ledger=self.ledger),
             instruction_set=self.instruction_set,
         )
 
@@ -118,12 +122,13 @@ class Case:
 
 def table(measurements: list[Measurement]) -> str:
     """The measurements in lines of text."""
-    head = "  points  threads  instructions  M point-steps/s  (slowest ... fastest)"
+    head = "  points  threads  ledger  instructions  M point-steps/s  (slowest ... fastest)"
     lines = [f"{head}  plain loop  ratio  bytes/point"]
     for m in measurements:
         spread = f"({m.slowest / 1e6:.1f} ... {m.fastest / 1e6:.1f})"
         lines.append(
-            f"{m.points:8,}  {m.threads:7}  {m.instruction_set:>12}  {m.median / 1e6:15.1f}"
+            f"{m.points:8,}  {m.threads:7}  {'on' if m.ledger else 'off':>6}"
+            f"  {m.instruction_set:>12}  {m.median / 1e6:15.1f}"
             f"  {spread:>21}  {m.plain / 1e6:10.1f}  {m.ratio:5.2f}  {m.bytes_per_point:11.0f}"
         )
     return "\n".join(lines)
