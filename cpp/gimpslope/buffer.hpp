@@ -7,10 +7,12 @@
 
 namespace gimpslope {
 
+constexpr std::size_t kCacheLine = 64;  // bytes
+
 template <class T>
 struct CacheAligned {
   using value_type = T;
-  static constexpr std::align_val_t line{64};
+  static constexpr std::align_val_t line{kCacheLine};
 
   CacheAligned() = default;
   template <class U>

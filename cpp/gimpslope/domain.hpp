@@ -13,36 +13,44 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// the jacobian, divided by the root of the initial volume.
 inline void update_domains(const View& view, int begin, int n) {
   const PointsView& p = view.points;
-  double* half_length = p.half_length + 2 * begin;
-  const double* reference = p.domain_reference + 2 * begin;
-  const double* deformation = p.deformation + 4 * begin;
+  double *lx = p.half_length[0] + begin, *ly = p.half_length[1] + begin;
+  const double *reference_x = p.domain_reference[0] + begin, *reference_y = p.domain_reference[1] + begin;
+  const double* volume = p.volume + begin;
   switch (view.domain_update) {
     case DomainUpdate::none:
       return;
     case DomainUpdate::jacobian:
+#pragma omp simd
       for (int k = 0; k < n; ++k) {
-        const double root = std::sqrt(p.volume[begin + k]);
-        half_length[2 * k] = reference[2 * k] * root;
-        half_length[2 * k + 1] = reference[2 * k + 1] * root;
+        const double root = std::sqrt(volume[k]);
+        lx[k] = reference_x[k] * root;
+        ly[k] = reference_y[k] * root;
       }
       return;
-    case DomainUpdate::stretch:
+    case DomainUpdate::stretch: {
+      const double *fxx = p.deformation[0] + begin, *fxy = p.deformation[1] + begin;
+      const double *fyx = p.deformation[2] + begin, *fyy = p.deformation[3] + begin;
+#pragma omp simd
       for (int k = 0; k < n; ++k) {
         // Polar decomposition in 2D: U = (C + J I) / sqrt(tr C + 2 J), C = F^T F.
-        const double* f = deformation + 4 * k;
-        const double jacobian = std::fabs(f[0] * f[3] - f[1] * f[2]);
-        const double cxx = f[0] * f[0] + f[2] * f[2], cyy = f[1] * f[1] + f[3] * f[3];
+        const double xx = fxx[k], xy = fxy[k], yx = fyx[k], yy = fyy[k];
+        const double jacobian = std::fabs(xx * yy - xy * yx);
+        const double cxx = xx * xx + yx * yx, cyy = xy * xy + yy * yy;
         const double divisor = std::sqrt(cxx + cyy + 2.0 * jacobian);
-        half_length[2 * k] = reference[2 * k] * (cxx + jacobian) / divisor;
-        half_length[2 * k + 1] = reference[2 * k + 1] * (cyy + jacobian) / divisor;
+        lx[k] = reference_x[k] * (cxx + jacobian) / divisor;
+        ly[k] = reference_y[k] * (cyy + jacobian) / divisor;
       }
       return;
-    case DomainUpdate::deformation_diagonal:
+    }
+    case DomainUpdate::deformation_diagonal: {
+      const double *fxx = p.deformation[0] + begin, *fyy = p.deformation[3] + begin;
+#pragma omp simd
       for (int k = 0; k < n; ++k) {
-        half_length[2 * k] = reference[2 * k] * deformation[4 * k];
-        half_length[2 * k + 1] = reference[2 * k + 1] * deformation[4 * k + 3];
+        lx[k] = reference_x[k] * fxx[k];
+        ly[k] = reference_y[k] * fyy[k];
       }
       return;
+    }
   }
 }
 

@@ -16,8 +16,7 @@ double strain_energy(const Law& law, const Stress& s) {
 }
 
 Stress stress_of(const Points& p, int k) {
-  const double* s = p.stress.data() + k;
-  return {s[0], s[p.size], s[2 * p.size], s[3 * p.size]};
+  return {p.stress[0][k], p.stress[1][k], p.stress[2][k], p.stress[3][k]};
 }
 
 }  // namespace
@@ -26,24 +25,26 @@ Energies Solver::energies() const {
   Energies sum{};
   double fastest = 0.0;
   for (int k = 0; k < points_.size; ++k) {
-    const double* m = points_.motion.data() + 4 * k;
-    const double square = m[2] * m[2] + m[3] * m[3];
+    const double mass = points_.mass[0][k], square = squared_speed(k);
     fastest = std::max(fastest, square);
-    sum.kinetic += 0.5 * points_.mass[k] * square;
-    sum.potential -= points_.mass[k] * (gravity_.x * m[0] + gravity_.y * m[1]);
+    sum.kinetic += 0.5 * mass * square;
+    sum.potential -=
+        mass * (gravity_.x * points_.position[0][k] + gravity_.y * points_.position[1][k]);
     sum.elastic +=
-        points_.volume[k] * strain_energy(laws_[points_.material[k]], stress_of(points_, k));
+        points_.volume[0][k] * strain_energy(laws_[points_.material[k]], stress_of(points_, k));
   }
   sum.max_speed = std::sqrt(fastest);
   return sum;
 }
 
+double Solver::squared_speed(int k) const {
+  const double vx = points_.velocity[0][k], vy = points_.velocity[1][k];
+  return vx * vx + vy * vy;
+}
+
 double Solver::kinetic_energy() const {
   double sum = 0.0;
-  for (int k = 0; k < points_.size; ++k) {
-    const double* m = points_.motion.data() + 4 * k;
-    sum += 0.5 * points_.mass[k] * (m[2] * m[2] + m[3] * m[3]);
-  }
+  for (int k = 0; k < points_.size; ++k) sum += 0.5 * points_.mass[0][k] * squared_speed(k);
   return sum;
 }
 
@@ -54,13 +55,12 @@ double Solver::release_stress() {
     if (laws_[material].kind != LawKind::drucker_prager) continue;
     const Stress before = stress_of(points_, k);
     Stress after = before;
-    return_to_surface(laws_[material].drucker_prager, after, points_.plastic_strain[k]);
-    double* s = points_.stress.data() + k;
-    s[0] = after.xx;
-    s[points_.size] = after.yy;
-    s[2 * points_.size] = after.zz;
-    s[3 * points_.size] = after.xy;
-    released += points_.volume[k] *
+    return_to_surface(laws_[material].drucker_prager, after, points_.plastic_strain[0][k]);
+    points_.stress[0][k] = after.xx;
+    points_.stress[1][k] = after.yy;
+    points_.stress[2][k] = after.zz;
+    points_.stress[3][k] = after.xy;
+    released += points_.volume[0][k] *
                 (strain_energy(laws_[material], before) - strain_energy(laws_[material], after));
   }
   ledger_.plastic += released;
@@ -74,21 +74,23 @@ Ledger Solver::ledger() const {
 }
 
 FieldView Solver::field(const std::string& name) {
+  const auto all = [](Field& field) {
+    return FieldView{field[0], 1, field.stride(), field.components()};
+  };
   Points& p = points_;
-  if (name == "position") return {p.motion.data(), 4, 1, 2};
-  if (name == "velocity") return {p.motion.data() + 2, 4, 1, 2};
-  if (name == "stress") return {p.stress.data(), 1, p.size, 4};
-  if (name == "volume") return {p.volume.data(), 1, 1, 1};
-  if (name == "mass") return {p.mass.data(), 1, 1, 1};
-  if (name == "plastic_strain") return {p.plastic_strain.data(), 1, 1, 1};
+  if (name == "position") return all(p.position);
+  if (name == "velocity") return all(p.velocity);
+  if (name == "stress") return all(p.stress);
+  if (name == "volume") return all(p.volume);
+  if (name == "mass") return all(p.mass);
+  if (name == "plastic_strain") return all(p.plastic_strain);
   if (name == "body_force") {
     keep_body_forces();
-    return {p.body_force.data(), 2, 1, 2};
+    return all(p.body_force);
   }
-  if (name == "half_length" && !p.half_length.empty()) return {p.half_length.data(), 2, 1, 2};
+  if (name == "half_length" && !p.half_length.empty()) return all(p.half_length);
   if (name == "half_length" && method_.shape != ShapeKind::linear) return {&half_length_, 0, 0, 2};
-  if (name == "deformation_gradient" && !p.deformation.empty())
-    return {p.deformation.data(), 4, 1, 4};
+  if (name == "deformation_gradient" && !p.deformation.empty()) return all(p.deformation);
   require(false, "field", name,
           "one of position, velocity, stress, volume, mass, plastic_strain, body_force, "
           "half_length (not with shape linear), deformation_gradient (with cpgimp stretch or "
@@ -99,7 +101,7 @@ FieldView Solver::field(const std::string& name) {
 /// Body forces take room, in points and nodes, from when one is first set or looked at.
 void Solver::keep_body_forces() {
   if (!points_.body_force.empty()) return;
-  points_.body_force.assign(2 * static_cast<std::size_t>(points_.size), 0.0);
+  points_.body_force = Field(2, points_.size);
   grid_.keep_body_forces();
   sorted_ = false;
 }

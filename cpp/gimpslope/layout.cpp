@@ -15,14 +15,14 @@ std::vector<Cell> first_cells(const Points& points, const Grid& grid, double hal
   std::vector<Cell> cells(points.size);
   const bool own = !points.half_length.empty();
   for (int k = 0; k < points.size; ++k) {
-    const double lx = own ? points.half_length[2 * k] : half_length;
-    const double ly = own ? points.half_length[2 * k + 1] : half_length;
-    const double column = std::floor((points.motion[4 * k] - lx - grid.x()) / grid.cell());
-    const double row = std::floor((points.motion[4 * k + 1] - ly - grid.y()) / grid.cell());
+    const double lx = own ? points.half_length[0][k] : half_length;
+    const double ly = own ? points.half_length[1][k] : half_length;
+    const double column = std::floor((points.position[0][k] - lx - grid.x()) / grid.cell());
+    const double row = std::floor((points.position[1][k] - ly - grid.y()) / grid.cell());
     constexpr double farthest = 1e9;
-    require(std::abs(column) < farthest, "position", points.motion[4 * k],
+    require(std::abs(column) < farthest, "position", points.position[0][k],
             "within 1e9 cells of the origin");
-    require(std::abs(row) < farthest, "position", points.motion[4 * k + 1],
+    require(std::abs(row) < farthest, "position", points.position[1][k],
             "within 1e9 cells of the origin");
     cells[k] = {static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)};
   }
@@ -62,6 +62,9 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
   sort_by(order, (high.row - low.row + 1) * materials,
           [&](std::int32_t point) { return row(point) * materials + points.material[point]; });
 
+  // Blocks begin on cache lines where they can, which full ones of kBlock points do.
+  constexpr int kLine = kCacheLine / sizeof(double);
+  static_assert(kBlock % kLine == 0);
   Layout layout;
   for (int k = 0; k < points.size; ++k) {
     const std::int32_t point = order[k];
@@ -69,7 +72,7 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
     const std::int32_t material = points.material[point];
     const bool new_slab = k == 0 || slab != row(order[k - 1]) / kSlabRows;
     if (new_slab || layout.blocks.back().material != material ||
-        k - layout.blocks.back().begin == kBlock) {
+        (k - layout.blocks.back().begin > kBlock - kLine && k % kLine == 0)) {
       if (new_slab) {
         const auto block = static_cast<std::int32_t>(layout.blocks.size());
         layout.slabs.resize(slab + 1, {block, block});

@@ -6,71 +6,67 @@
 namespace gimpslope {
 namespace {
 
-template <int kWidth, class T>
+template <class T>
 void permute(T* data, const std::vector<std::int32_t>& order, Buffer<T>& scratch) {
   T* sorted = scratch.data();
-  for (std::size_t k = 0; k < order.size(); ++k)
-    for (int c = 0; c < kWidth; ++c) sorted[kWidth * k + c] = data[kWidth * order[k] + c];
-  std::copy_n(sorted, kWidth * order.size(), data);
+  for (std::size_t k = 0; k < order.size(); ++k) sorted[k] = data[order[k]];
+  std::copy_n(sorted, order.size(), data);
+}
+
+std::ptrdiff_t whole_lines(std::ptrdiff_t n) {
+  constexpr std::ptrdiff_t line = kCacheLine / sizeof(double);
+  return (n + line - 1) / line * line;
 }
 
 }  // namespace
 
+Field::Field(int components, int points)
+    : components_(components), stride_(whole_lines(points)), values_(components * stride_) {}
+
 Points::Points(int n, bool own_domains, bool with_deformation)
     : size(n),
-      motion(4 * n),
-      stress(4 * n),
-      volume(n),
-      mass(n),
-      plastic_strain(n),
-      half_length(own_domains ? 2 * n : 0),
-      domain_reference(own_domains ? 2 * n : 0),
-      deformation(with_deformation ? 4 * n : 0),
+      position(2, n),
+      velocity(2, n),
+      stress(4, n),
+      volume(1, n),
+      mass(1, n),
+      plastic_strain(1, n),
       material(n),
       number(n),
-      scratch_(4 * n),
+      scratch_(n),
       integer_scratch_(n) {
+  if (own_domains) half_length = domain_reference = Field(2, n);
+  if (with_deformation) {
+    deformation = Field(4, n);
+    std::fill_n(deformation[0], n, 1.0);
+    std::fill_n(deformation[3], n, 1.0);
+  }
   std::iota(number.begin(), number.end(), 0);
-  for (std::size_t k = 0; k < deformation.size(); k += 4) deformation[k] = deformation[k + 3] = 1.0;
 }
 
 void Points::reorder(const std::vector<std::int32_t>& order) {
-  permute<4>(motion.data(), order, scratch_);
-  for (int c = 0; c < 4; ++c) permute<1>(stress.data() + c * size, order, scratch_);
-  for (Buffer<double>* scalar : {&volume, &mass, &plastic_strain})
-    permute<1>(scalar->data(), order, scratch_);
-  for (Buffer<double>* pair : {&half_length, &domain_reference, &body_force})
-    if (!pair->empty()) permute<2>(pair->data(), order, scratch_);
-  if (!deformation.empty()) permute<4>(deformation.data(), order, scratch_);
-  permute<1>(material.data(), order, integer_scratch_);
-  permute<1>(number.data(), order, integer_scratch_);
+  for (Field* field : {&position, &velocity, &stress, &volume, &mass, &plastic_strain,
+                       &half_length, &domain_reference, &deformation, &body_force}) {
+    for (int c = 0; c < field->components(); ++c) permute((*field)[c], order, scratch_);
+  }
+  permute(material.data(), order, integer_scratch_);
+  permute(number.data(), order, integer_scratch_);
 }
 
 PointsView Points::view() {
-  const auto optional = [](Buffer<double>& b) {
-    return b.empty() ? nullptr : b.data();
-  };
-  return {motion.data(),
-          stress.data(),
-          stress.data() + size,
-          stress.data() + 2 * size,
-          stress.data() + 3 * size,
-          volume.data(),
-          plastic_strain.data(),
-          mass.data(),
-          optional(half_length),
-          optional(domain_reference),
-          optional(deformation),
-          optional(body_force)};
+  return {position[0], position[1], velocity[0], velocity[1], stress[0], stress[1], stress[2],
+          stress[3], volume[0], plastic_strain[0], mass[0], half_length[0], half_length[1],
+          domain_reference[0], domain_reference[1], {deformation[0], deformation[1], deformation[2], deformation[3]},
+          {body_force[0], body_force[1]}};
 }
 
 std::int64_t Points::bytes() const {
   std::int64_t total = sizeof(std::int32_t) *
                        (material.capacity() + number.capacity() + integer_scratch_.capacity());
-  for (const Buffer<double>* b : {&motion, &stress, &volume, &mass, &plastic_strain, &half_length,
-                                  &domain_reference, &deformation, &body_force, &scratch_})
-    total += sizeof(double) * b->capacity();
-  return total;
+  for (const Field* field : {&position, &velocity, &stress, &volume, &mass, &plastic_strain,
+                             &half_length, &domain_reference, &deformation, &body_force})
+    total += field->bytes();
+  return total + sizeof(double) * scratch_.capacity();
 }
 
 }  // namespace gimpslope

@@ -10,8 +10,8 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Largest angle, rad, at which the series below are exact to rounding.
-constexpr double kSmallAngle = 0.5;
+/// Largest angles, rad, at which the series below are exact to rounding.
+constexpr double kSmallAngle = 0.5, kTinyAngle = 1.0 / 64;
 
 /// Cosine and sine by their Taylor series: free of branches, so that loops over points vectorise.
 inline void small_rotation(double angle, double& cosine, double& sine) {
@@ -31,20 +31,33 @@ inline void small_rotation(double angle, double& cosine, double& sine) {
                             a * (1.0 / 362880 + a * (-1.0 / 39916800 + a * (1.0 / 6227020800)))))));
 }
 
-/// Cosine and sine of n angles. A stable step turns a point by far less than kSmallAngle; a block
-/// that holds a larger angle takes the library's functions.
+/// The first terms of the same series.
+inline void tiny_rotation(double angle, double& cosine, double& sine) {
+  const double a = angle * angle;
+  cosine = 1.0 + a * (-1.0 / 2 + a * (1.0 / 24 + a * (-1.0 / 720)));
+  sine = angle * (1.0 + a * (-1.0 / 6 + a * (1.0 / 120 + a * (-1.0 / 5040))));
+}
+
+/// Cosine and sine of n angles. A stable step turns a point by little: a block that holds a larger
+/// angle takes the longer series, or the library's functions.
 inline void rotation(int n, const double* angle, double* cosine, double* sine) {
   double largest = 0.0;
 #pragma omp simd reduction(max : largest)
   for (int k = 0; k < n; ++k) {
-    small_rotation(angle[k], cosine[k], sine[k]);
     const double size = std::fabs(angle[k]);
     largest = size > largest ? size : largest;
   }
-  if (largest <= kSmallAngle) return;
-  for (int k = 0; k < n; ++k) {
-    cosine[k] = std::cos(angle[k]);
-    sine[k] = std::sin(angle[k]);
+  if (largest <= kTinyAngle) {
+#pragma omp simd
+    for (int k = 0; k < n; ++k) tiny_rotation(angle[k], cosine[k], sine[k]);
+  } else if (largest <= kSmallAngle) {
+#pragma omp simd
+    for (int k = 0; k < n; ++k) small_rotation(angle[k], cosine[k], sine[k]);
+  } else {
+    for (int k = 0; k < n; ++k) {
+      cosine[k] = std::cos(angle[k]);
+      sine[k] = std::sin(angle[k]);
+    }
   }
 }
 

@@ -71,11 +71,11 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
 void Solver::fill(const InitialPoints& given) {
   for (int k = 0; k < points_.size; ++k) {
     for (int c = 0; c < 2; ++c) {
-      points_.motion[4 * k + c] = given.position[2 * k + c];
-      points_.motion[4 * k + 2 + c] = given.velocity[2 * k + c];
+      points_.position[c][k] = given.position[2 * k + c];
+      points_.velocity[c][k] = given.velocity[2 * k + c];
     }
-    points_.mass[k] = given.mass[k];
-    points_.volume[k] = given.volume[k];
+    points_.mass[0][k] = given.mass[k];
+    points_.volume[0][k] = given.volume[k];
     points_.material[k] = given.material[k];
   }
   if (method_.shape == ShapeKind::linear) return;
@@ -86,10 +86,13 @@ void Solver::fill(const InitialPoints& given) {
     half_length_ = l.front();
     return;
   }
-  for (std::size_t k = 0; k < l.size(); ++k) {
-    const bool jacobian = method_.domain_update == DomainUpdate::jacobian;
-    points_.half_length[k] = l[k];
-    points_.domain_reference[k] = jacobian ? l[k] / std::sqrt(given.volume[k / 2]) : l[k];
+  const bool jacobian = method_.domain_update == DomainUpdate::jacobian;
+  for (int k = 0; k < points_.size; ++k) {
+    for (int c = 0; c < 2; ++c) {
+      const double own = l[2 * k + c];
+      points_.half_length[c][k] = own;
+      points_.domain_reference[c][k] = jacobian ? own / std::sqrt(given.volume[k]) : own;
+    }
   }
 }
 
@@ -205,11 +208,10 @@ void Solver::fail(const std::string& what, std::int64_t point) {
 
 /// A point was refused its move: says which, and what is likely to have happened.
 void Solver::fail_at(int lost, double dt) {
-  const double* m = points_.motion.data() + 4 * lost;
-  const double speed = std::hypot(m[2], m[3]);
-  const double* s = points_.stress.data() + lost;
-  const int n = points_.size;
-  const bool finite = std::isfinite(s[0] + s[n] + s[2 * n] + s[3 * n] + points_.volume[lost]);
+  const double x = points_.position[0][lost], y = points_.position[1][lost];
+  const double speed = std::sqrt(squared_speed(lost));
+  bool finite = std::isfinite(points_.volume[0][lost]);
+  for (int c = 0; c < 4; ++c) finite = finite && std::isfinite(points_.stress[c][lost]);
   std::string cause = "an inverted domain, or points too far apart to share nodes";
   if (speed * dt > kFarthestStep * cell()) {
     cause = "its speed of " + text(speed) + " m/s";
@@ -217,7 +219,7 @@ void Solver::fail_at(int lost, double dt) {
     cause = "the time step of " + text(dt) + " s is above the stable limit of " +
             text(stable_at_sort_) + " s";
   }
-  fail("point " + std::to_string(points_.number[lost]) + " at (" + text(m[0]) + ", " + text(m[1]) +
+  fail("point " + std::to_string(points_.number[lost]) + " at (" + text(x) + ", " + text(y) +
            ") m " +
            (finite ? "would move or grow by more than half a cell in one step"
                    : "has a stress that is not finite") +
@@ -229,8 +231,13 @@ void Solver::fail_at(int lost, double dt) {
 void Solver::follow_width(double width) {
   width_ = width;
   if (width_ > widest(Basis::gimp_wide)) {
-    const auto& l = points_.half_length;
-    const auto point = (std::max_element(l.begin(), l.end()) - l.begin()) / 2;
+    const auto wider = [&](int a, int b) {
+      const Field& l = points_.half_length;
+      return std::max(l[0][a], l[1][a]) < std::max(l[0][b], l[1][b]);
+    };
+    int point = 0;
+    for (int k = 1; k < points_.size; ++k)
+      if (wider(point, k)) point = k;
     fail("the domain of point " + std::to_string(points_.number[point]) + " is " + text(width_) +
              " cells wide, of 3 allowed; likely cause: shear or extension that domain_update "
              "stretch or deformation_diagonal follows without bound, or soil that came apart",
@@ -246,8 +253,7 @@ void Solver::damp_at_peak() {
     last_kinetic_ = kinetic;
     return;
   }
-  for (int k = 0; k < points_.size; ++k)
-    points_.motion[4 * k + 2] = points_.motion[4 * k + 3] = 0.0;
+  points_.velocity.fill(0.0);
   ledger_.damping += kinetic;
   last_kinetic_ = 0.0;
   nodes_ready_ = speeds_known_ = false;
@@ -305,7 +311,7 @@ void Solver::reset_clock() {
   time_ = time_carry_ = 0.0;
   steps_ = 0;
   ledger_ = {};
-  std::fill(points_.plastic_strain.begin(), points_.plastic_strain.end(), 0.0);
+  points_.plastic_strain.fill(0.0);
 }
 
 double Solver::time_step() {
@@ -335,21 +341,17 @@ void Solver::gather_speeds() {
 }
 
 int Solver::fastest_point() const {
-  const auto square = [&](int k) {
-    const double* m = points_.motion.data() + 4 * k;
-    return m[2] * m[2] + m[3] * m[3];
-  };
   int fastest = 0;
   for (int k = 1; k < points_.size; ++k)
-    if (square(k) > square(fastest)) fastest = k;
+    if (squared_speed(k) > squared_speed(fastest)) fastest = k;
   return points_.number[fastest];
 }
 
 double Solver::stable_time_step_of(const std::vector<Material>& materials) const {
   double fastest = 0.0;
   for (int k = 0; k < points_.size; ++k)
-    fastest = std::max(fastest, materials[points_.material[k]].wave_modulus() * points_.volume[k] /
-                                    points_.mass[k]);
+    fastest = std::max(fastest, materials[points_.material[k]].wave_modulus() *
+                                    points_.volume[0][k] / points_.mass[0][k]);
   return kCourantLimit * grid_.cell() / std::sqrt(fastest);
 }
 

@@ -97,6 +97,7 @@ class Solver {
   double stable_time_step_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
   void check_alpha(double dt) const;
+  double squared_speed(int k) const;
   double kinetic_energy() const;
   void gather_speeds();
   int fastest_point() const;

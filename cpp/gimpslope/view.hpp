@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "buffer.hpp"
 #include "ledger.hpp"
 #include "material/material.hpp"
 #include "method.hpp"
@@ -26,16 +27,18 @@ struct Slab {
   std::int32_t begin, end;
 };
 
-/// One value a point, in storage order; motion holds {x, y, vx, vy}, deformation the rows of F,
-/// half_length, domain_reference and body_force (a unit of mass) {x, y}. The last four are null
-/// where there is no need of them.
+/// One value a point and component, in storage order. Half-lengths and their reference, the rows of
+/// the deformation gradient, and body forces (a unit of mass) are null where there is no need of
+/// them.
 struct PointsView {
-  double* motion;
+  double *x, *y, *vx, *vy;
   double *stress_xx, *stress_yy, *stress_zz, *stress_xy;
   double *volume, *plastic_strain;
   const double* mass;
-  double *half_length, *domain_reference, *deformation;
-  const double* body_force;
+  double* half_length[2];
+  const double* domain_reference[2];
+  double* deformation[4];
+  const double* body_force[2];
 };
 
 /// Active nodes of a row: [begin, end).

@@ -29,7 +29,7 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// is cut back, and sqrt(J2) falls to the cone only if it was above (two-surface return of Koiter;
 /// the apex, where the textbook formula divides by etabar, is the case tension = k / eta).
 inline void return_to_surface(const DruckerPrager& law, Stress& s, double& plastic_strain) {
-  const double trial_mean = (s.xx + s.yy + s.zz) / 3.0;
+  const double trial_mean = (s.xx + s.yy + s.zz) * (1.0 / 3.0);
   const double xx = s.xx - trial_mean, yy = s.yy - trial_mean, zz = s.zz - trial_mean;
   const double trial = std::sqrt(0.5 * (xx * xx + yy * yy + zz * zz) + s.xy * s.xy);
 

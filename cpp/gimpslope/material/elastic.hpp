@@ -33,7 +33,8 @@ inline Compliance compliance_of(const Elastic& law) {
 
 /// a : C^-1 : b, J/m3; half of it is the elastic energy where both are the same.
 inline double product(const Compliance& c, const Stress& a, const Stress& b) {
-  const double mean_a = (a.xx + a.yy + a.zz) / 3.0, mean_b = (b.xx + b.yy + b.zz) / 3.0;
+  const double mean_a = (a.xx + a.yy + a.zz) * (1.0 / 3.0);
+  const double mean_b = (b.xx + b.yy + b.zz) * (1.0 / 3.0);
   const double deviators = (a.xx - mean_a) * (b.xx - mean_b) + (a.yy - mean_a) * (b.yy - mean_b) +
                            (a.zz - mean_a) * (b.zz - mean_b) + 2.0 * a.xy * b.xy;
   return c.mean * mean_a * mean_b + c.deviator * deviators;

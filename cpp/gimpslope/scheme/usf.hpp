@@ -17,9 +17,8 @@ struct Usf {
     together(*view.team, [&] {
       for_each_slab(view, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
-          Weights<Shape> weights;
-          evaluate<Shape, kOwnDomain, Need::values>(view, block.begin, block.end - block.begin,
-                                                    weights);
+          Weights<Shape, Need::values> weights;
+          evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
           scatter_momentum(view, block.begin, block.end - block.begin, weights);
         });
       });
@@ -83,12 +82,14 @@ struct Usf {
   static void move_block(const View& view, const StepInput& input, const Block& block,
                          Report& report) {
     const int begin = block.begin, n = block.end - block.begin;
-    Weights<Shape> weights;
-    evaluate<Shape, kOwnDomain, Need::values>(view, begin, n, weights);
-    move_points(view, begin, n, input.alpha, weights, report);
+    Weights<Shape, Need::values> weights;
+    evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+    Change change;
+    gather_change(view, n, weights, change);
+    move_points(view, begin, n, input.alpha, change, report);
     if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
     if (report.lost >= 0) return;
-    evaluate<Shape, kOwnDomain, Need::values>(view, begin, n, weights);
+    evaluate<Shape, kOwnDomain>(view, begin, n, weights);
     scatter_momentum(view, begin, n, weights);
     if (input.wants_speeds) add_speeds(view, block, report.speeds);
   }

@@ -3,6 +3,7 @@
 
 #include "../ledger.hpp"
 #include "../rotation.hpp"
+#include "../tensor.hpp"
 #include "../view.hpp"
 
 namespace gimpslope {
@@ -29,11 +30,11 @@ inline void add_wall(const GridView& g, int column, int row, int component, bool
 /// The forces and velocities of a node in a step.
 struct NodeStep {
   double mass, inverse_mass;
-  double internal[2], weight[2], body[2], damping[2];  // weight: of the gravity that acts
-  double full_weight[2];
-  double raw[2], before[2], after[2];  // v-, v', v+
+  Pair internal, weight, body, damping;  // weight: of the gravity that acts
+  Pair full_weight;
+  Pair raw, before, after;  // v-, v', v+
 
-  double total(int c) const { return internal[c] + weight[c] + body[c] + damping[c]; }
+  Pair total() const { return internal + weight + body + damping; }
 };
 
 /// What a step does at a node.
@@ -49,18 +50,19 @@ inline void add_node(const NodeStep& s, double dt, Ledger& sum) {
 
 /// Energy that the reactions of the walls take from a component of a node's motion.
 inline double taken_by_walls(const NodeStep& s, double dt, int c) {
-  const double impulse = s.mass * (s.after[c] - s.before[c]) - dt * s.total(c);
+  const double impulse = s.mass * (s.after[c] - s.before[c]) - dt * s.total()[c];
   return -impulse * 0.5 * (s.before[c] + s.after[c]);
 }
 
 /// Gain of kinetic energy of n points whose velocity becomes keep v + change.
-inline double kinetic_gain(int n, const double* mass, const double* motion, const double* change,
-                           double keep) {
+inline double kinetic_gain(const PointsView& p, int begin, int n, double keep,
+                           const double* change_x, const double* change_y) {
+  const double *px = p.vx + begin, *py = p.vy + begin, *mass = p.mass + begin;
   double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
   for (int k = 0; k < n; ++k) {
-    const double vx = motion[4 * k + 2], vy = motion[4 * k + 3];
-    const double ux = keep * vx + change[4 * k + 2], uy = keep * vy + change[4 * k + 3];
+    const double vx = px[k], vy = py[k];
+    const double ux = keep * vx + change_x[k], uy = keep * vy + change_y[k];
     sum += 0.5 * mass[k] * ((ux - vx) * (ux + vx) + (uy - vy) * (uy + vy));
   }
   return sum;

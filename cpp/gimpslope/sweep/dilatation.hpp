@@ -12,9 +12,8 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// The sums of the cell that the place of point k, counted from `begin`, lies in.
 inline double* cell_of(const View& view, int begin, int k) {
   const GridView& g = view.grid;
-  const double* motion = view.points.motion + 4 * (begin + k);
-  const int column = static_cast<int>((motion[0] - g.left) / g.cell);
-  const int row = static_cast<int>((motion[1] - g.bottom) / g.cell);
+  const int column = static_cast<int>((view.points.x[begin + k] - g.left) / g.cell);
+  const int row = static_cast<int>((view.points.y[begin + k] - g.bottom) / g.cell);
   return g.cells + 4 * (row * g.stride + column);
 }
 
@@ -22,15 +21,15 @@ inline double* cell_of(const View& view, int begin, int k) {
 template <class Shape, bool kOwnDomain>
 void dilatation_block(const View& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
-  Weights<Shape> weights;
-  alignas(64) double gradient[4 * kBlock];
-  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
+  Weights<Shape, Need::gradients> weights;
+  Gradient gradient;
+  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   gather_gradient(view, n, weights, gradient);
   for (int k = 0; k < n; ++k) {
     const double volume = view.points.volume[begin + k];
     double* cell = cell_of(view, begin, k);
     cell[0] += volume;
-    cell[1] += volume * (gradient[4 * k] + gradient[4 * k + 3]);
+    cell[1] += volume * (gradient.vx_x[k] + gradient.vy_y[k]);
   }
 }
 
@@ -40,18 +39,18 @@ void averaged_stress_block(const View& view, const StepInput& input, const Block
                            Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
   const PointsView& p = view.points;
-  Weights<Shape> weights;
-  Strains strains;
-  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
-  gather_gradient(view, n, weights, strains.gradient);
+  Weights<Shape, Need::gradients> weights;
+  Gradient gradient;
+  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+  gather_gradient(view, n, weights, gradient);
   for (int k = 0; k < n; ++k) {
     const double* cell = cell_of(view, begin, k);
-    double* gradient = strains.gradient + 4 * k;
-    const double change = 0.5 * (cell[1] / cell[0] - (gradient[0] + gradient[3]));
-    gradient[0] += change;
-    gradient[3] += change;
+    const double own = gradient.vx_x[k] + gradient.vy_y[k];
+    const double change = 0.5 * (cell[1] / cell[0] - own);
+    gradient.vx_x[k] += change;
+    gradient.vy_y[k] += change;
   }
-  deform_block(view, input, block, strains, ledger);
+  deform_block(view, input, block, gradient, ledger);
   for (int k = 0; k < n; ++k) {
     const double volume = p.volume[begin + k];
     double* cell = cell_of(view, begin, k);
@@ -64,19 +63,19 @@ void averaged_stress_block(const View& view, const StepInput& input, const Block
 template <class Shape, bool kOwnDomain>
 void averaged_force_block(const View& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
-  Weights<Shape> weights;
-  alignas(64) double forces[4 * kBlock];
-  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
+  Weights<Shape, Need::gradients> weights;
+  PointForces forces;
+  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   point_forces(view, begin, n, forces);
   for (int k = 0; k < n; ++k) {
     const double* cell = cell_of(view, begin, k);
     const double mean = -view.points.volume[begin + k] / view.grid.cell * (cell[2] / cell[3]);
-    const double change = mean - 0.5 * (forces[4 * k] + forces[4 * k + 3]);
-    forces[4 * k] += change;
-    forces[4 * k + 3] += change;
+    const double change = mean - 0.5 * (forces.xx[k] + forces.yy[k]);
+    forces.xx[k] += change;
+    forces.yy[k] += change;
   }
   scatter_forces(view, n, weights, forces);
-  if (view.points.body_force != nullptr) scatter_body_forces(view, begin, n, weights);
+  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

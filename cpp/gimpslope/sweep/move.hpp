@@ -13,72 +13,116 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
+/// What the nodes add to the places and velocities of the points of a block.
+struct Change {
+  alignas(kCacheLine) double x[kBlock], y[kBlock], vx[kBlock], vy[kBlock];
+};
+
+/// Sum of S update (paper eq. 26).
+template <class Shape>
+void gather_change(const View& view, int n, const Weights<Shape, Need::values>& weights,
+                   Change& change) {
+  const double* update = view.grid.update;
+  const int stride = view.grid.stride;
+  for (int k = 0; k < n; ++k) {
+    const double* first = update + 4 * weights.first[k];
+    Quad sum{};
+    for (int j = 0; j < Shape::nodes; ++j) {
+      const double* row = first + 4 * j * stride;
+      Quad along = quad(row) * weights.value_x(0, k);
+      for (int i = 1; i < Shape::nodes; ++i) along += quad(row + 4 * i) * weights.value_x(i, k);
+      sum += along * weights.value_y(j, k);
+    }
+    change.x[k] = sum[0];
+    change.y[k] = sum[1];
+    change.vx[k] = sum[2];
+    change.vy[k] = sum[3];
+  }
+}
+
 constexpr double kHuge = 1e300;
 
 /// The first of the points whose change is not finite or takes it too far.
-inline int first_too_far(int n, double per_cell, const double* change) {
+inline int first_too_far(int n, double per_cell, const Change& change) {
   for (int k = 0; k < n; ++k) {
-    const double* c = change + 4 * k;
-    const bool near =
-        per_cell * std::fabs(c[0]) <= kFarthestStep && per_cell * std::fabs(c[1]) <= kFarthestStep;
-    if (!near || !(std::fabs(c[2]) + std::fabs(c[3]) <= kHuge)) return k;
+    const bool near = per_cell * std::fabs(change.x[k]) <= kFarthestStep &&
+                      per_cell * std::fabs(change.y[k]) <= kFarthestStep;
+    if (!near || !(std::fabs(change.vx[k]) + std::fabs(change.vy[k]) <= kHuge)) return k;
   }
   return n - 1;
 }
 
-/// Velocity (paper eq. 26) and place: motion = {x, y, (1-alpha) vx, (1-alpha) vy} + sum S update.
-/// The points of a block move together or, if one of them would go too far, not at all.
-template <class Shape>
-void move_points(const View& view, int begin, int n, double alpha, const Weights<Shape>& weights,
-                 Report& report) {
-  const double* update = view.grid.update;
-  const int stride = view.grid.stride;
-  const Quad keep(1.0, 1.0, 1.0 - alpha, 1.0 - alpha);
-  double* motion = view.points.motion + 4 * begin;
-  alignas(64) double change[4 * kBlock];
-  Quad largest = Quad::Zero(), sum_of_all = Quad::Zero();  // the sum is NaN if any change is
+/// New places, and velocities (1 - alpha) v + change. The points of a block move together or, if
+/// one of them would go too far, not at all.
+inline void move_points(const View& view, int begin, int n, double alpha, const Change& change,
+                        Report& report) {
+  double largest = 0.0, sum = 0.0;  // the sum is NaN if any change is
+#pragma omp simd reduction(max : largest) reduction(+ : sum)
   for (int k = 0; k < n; ++k) {
-    const double* first = update + 4 * weights.first[k];
-    Quad sum = Quad::Zero();
-    for (int j = 0; j < Shape::nodes; ++j) {
-      const double* row = first + 4 * j * stride;
-      Quad along = quad(row) * weights.x[0][k];
-      for (int i = 1; i < Shape::nodes; ++i) along += quad(row + 4 * i) * weights.x[i][k];
-      sum += along * weights.y[j][k];
-    }
-    quad(change + 4 * k) = sum;
-    largest = largest.max(sum.abs());
-    sum_of_all += sum;
+    const double x = std::fabs(change.x[k]), y = std::fabs(change.y[k]);
+    const double farther = x > y ? x : y;
+    largest = farther > largest ? farther : largest;
+    sum += (x + y) + (change.vx[k] + change.vy[k]);
   }
   const double per_cell = 1.0 / view.grid.cell;
-  const double travel = per_cell * (largest[0] > largest[1] ? largest[0] : largest[1]);
-  if (!(travel <= kFarthestStep && std::fabs(sum_of_all.sum()) <= kHuge)) {
+  const double travel = per_cell * largest;
+  if (!(travel <= kFarthestStep && std::fabs(sum) <= kHuge)) {
     report.lost = begin + first_too_far(n, per_cell, change);
     return;
   }
   report.travel = travel > report.travel ? travel : report.travel;
-  if (view.ledger != nullptr) {
-    report.ledger.transfer -=
-        kinetic_gain(n, view.points.mass + begin, motion, change, 1.0 - alpha);
+  const PointsView& p = view.points;
+  double *px = p.x + begin, *py = p.y + begin, *vx = p.vx + begin, *vy = p.vy + begin;
+  const double keep = 1.0 - alpha;
+  if (view.ledger != nullptr)
+    report.ledger.transfer -= kinetic_gain(p, begin, n, keep, change.vx, change.vy);
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    px[k] += change.x[k];
+    py[k] += change.y[k];
+    vx[k] = keep * vx[k] + change.vx[k];
+    vy[k] = keep * vy[k] + change.vy[k];
   }
-  for (int k = 0; k < n; ++k)
-    quad(motion + 4 * k) = keep * quad(motion + 4 * k) + quad(change + 4 * k);
+}
+
+/// How the half-lengths of a block changed along one axis.
+struct Growth {
+  double largest = 0.0;   // change of a half-length, m, either way
+  double narrowest = 0.0, widest = 0.0;  // half-length, m
+  bool known = false;   // none is NaN
+};
+
+inline Growth growth_of(int n, const double* before, const double* after) {
+  double largest = 0.0, narrowest = after[0], widest = 0.0, sum = 0.0;
+#pragma omp simd reduction(max : largest, widest) reduction(min : narrowest) reduction(+ : sum)
+  for (int k = 0; k < n; ++k) {
+    const double change = std::fabs(after[k] - before[k]);
+    largest = change > largest ? change : largest;
+    narrowest = after[k] < narrowest ? after[k] : narrowest;
+    widest = after[k] > widest ? after[k] : widest;
+    sum += after[k];
+  }
+  return {largest, narrowest, widest, sum <= kHuge};
 }
 
 /// New domains, how far their edges moved, and the widest one.
 inline void resize_domains(const View& view, int begin, int n, Report& report) {
-  double* half_length = view.points.half_length + 2 * begin;
   const double per_cell = 1.0 / view.grid.cell;
-  double before[2 * kBlock];
-  for (int k = 0; k < 2 * n; ++k) before[k] = half_length[k];
+  double before[2][kBlock];
+  for (int c = 0; c < 2; ++c)
+    for (int k = 0; k < n; ++k) before[c][k] = view.points.half_length[c][begin + k];
   update_domains(view, begin, n);
-  for (int k = 0; k < 2 * n; ++k) {
-    const double change = per_cell * std::fabs(half_length[k] - before[k]);
-    const double width = 2.0 * per_cell * half_length[k];
-    if (!(width > 0.0 && report.travel + change <= kFarthestStep)) {
-      report.lost = begin + k / 2;
+  for (int c = 0; c < 2; ++c) {
+    const double* after = view.points.half_length[c] + begin;
+    const Growth growth = growth_of(n, before[c], after);
+    const double farthest = (kFarthestStep - report.travel) / per_cell;
+    if (!(growth.known && growth.narrowest > 0.0 && growth.largest <= farthest)) {
+      int k = 0;
+      while (k < n - 1 && after[k] > 0.0 && std::fabs(after[k] - before[c][k]) <= farthest) ++k;
+      report.lost = begin + k;
       return;
     }
+    const double change = per_cell * growth.largest, width = 2.0 * per_cell * growth.widest;
     report.growth = change > report.growth ? change : report.growth;
     report.width = width > report.width ? width : report.width;
   }

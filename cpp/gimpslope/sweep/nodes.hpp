@@ -14,7 +14,7 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// Calls visit(side, outward, normal, tangential) for each wall that node (column, row) lies on or
 /// beyond, in the order left, right, bottom, top.
 template <class Visit>
-void for_each_wall(const GridView& g, int column, int row, double* v, Visit visit) {
+void for_each_wall(const GridView& g, int column, int row, Pair& v, Visit visit) {
   if (column <= g.wall[left]) visit(left, -1.0, v[0], v[1]);
   if (column >= g.wall[right]) visit(right, 1.0, v[0], v[1]);
   if (row <= g.wall[bottom]) visit(bottom, -1.0, v[1], v[0]);
@@ -38,32 +38,26 @@ void for_each_node(const GridView& g, int row, Inner inner, AtWall wall) {
   for (int i = to; i < range.end; ++i) wall(start + i, i);
 }
 
-/// Velocity of the nodes of a row (paper eq. 20) within the walls; clears the forces, and begins
-/// the row's ledger where one is kept.
+/// Mean velocity of the points at a node (paper eq. 20), of {m, m, m vx, m vy}.
+inline Pair velocity_of(const double* momentum) {
+  const double inverse = momentum[0] > 0.0 ? 1.0 / momentum[0] : 0.0;
+  return inverse * pair(momentum + 2);
+}
+
+/// Velocity of the nodes of a row within the walls; clears the forces, and begins the row's ledger
+/// where one is kept.
 inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
   if (ledger != nullptr) *ledger = {};
-  const auto velocity = [&](int node, double* v) {
-    const double* m = g.momentum + 4 * node;
-    const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
-    v[0] = inverse * m[2];
-    v[1] = inverse * m[3];
-  };
-  const auto set = [&](int node, const double* v) {
-    quad(g.velocity + 4 * node) = Quad(v[0], v[0], v[1], v[1]);
-    quad(g.force + 4 * node).setZero();
-    if (g.cells != nullptr) quad(g.cells + 4 * node).setZero();
+  const auto set = [&](int node, const Pair& v) {
+    quad(g.velocity + 4 * node) = Quad{v[0], v[0], v[1], v[1]};
+    quad(g.force + 4 * node) = Quad{};
+    if (g.cells != nullptr) quad(g.cells + 4 * node) = Quad{};
   };
   for_each_node(
-      g, row,
-      [&](int node) {
-        double v[2];
-        velocity(node, v);
-        set(node, v);
-      },
+      g, row, [&](int node) { set(node, velocity_of(g.momentum + 4 * node)); },
       [&](int node, int column) {
-        double v[2];
-        velocity(node, v);
-        const double raw[2] = {v[0], v[1]};
+        const Pair raw = velocity_of(g.momentum + 4 * node);
+        Pair v = raw;
         const double* moved = g.update + 4 * node;  // in the step before
         for_each_wall(g, column, row, v,
                       [&](Side side, double outward, double& normal, double& tangential) {
@@ -86,23 +80,19 @@ inline NodeStep forces_on(const GridView& g, int node, const StepInput& step) {
   const double* m = g.momentum + 4 * node;
   const double* f = g.force + 4 * node;
   const double* shown = g.velocity + 4 * node;
-  const double gravity[2] = {step.gravity_x, step.gravity_y};
-  const double full_gravity[2] = {step.full_gravity_x, step.full_gravity_y};
-  const double inverse = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
   NodeStep s;
   s.mass = m[0];
-  s.inverse_mass = inverse;
-  for (int c = 0; c < 2; ++c) {
-    s.raw[c] = inverse * m[2 + c];
-    s.before[c] = shown[2 * c];
-    s.internal[c] = f[2 * c] + f[2 * c + 1];
-    s.weight[c] = m[0] * gravity[c];
-    s.full_weight[c] = m[0] * full_gravity[c];
-    s.body[c] = g.body != nullptr ? g.body[4 * node + c] : 0.0;
-    const double unbalanced = s.internal[c] + s.weight[c] + s.body[c];
-    const double sign = (s.before[c] > 0.0 ? 1.0 : 0.0) - (s.before[c] < 0.0 ? 1.0 : 0.0);
-    s.damping[c] = -step.local_damping * std::fabs(unbalanced) * sign;
-  }
+  s.inverse_mass = m[0] > 0.0 ? 1.0 / m[0] : 0.0;
+  s.raw = s.inverse_mass * pair(m + 2);
+  s.before = Pair(shown[0], shown[2]);
+  s.internal = Pair(f[0] + f[1], f[2] + f[3]);
+  s.weight = m[0] * Pair(step.gravity_x, step.gravity_y);
+  s.full_weight = m[0] * Pair(step.full_gravity_x, step.full_gravity_y);
+  s.body = Pair::Zero();
+  if (g.body != nullptr) s.body = pair(g.body + 4 * node);
+  s.damping = Pair::Zero();
+  if (step.local_damping != 0.0)
+    s.damping = -step.local_damping * (s.internal + s.weight + s.body).abs() * s.before.sign();
   return s;
 }
 
@@ -112,14 +102,13 @@ inline NodeStep forces_on(const GridView& g, int node, const StepInput& step) {
 template <bool kLedger>
 void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
   const auto advance = [&](NodeStep& s) {
-    for (int c = 0; c < 2; ++c) s.after[c] = s.raw[c] + step.dt * s.inverse_mass * s.total(c);
+    s.after = s.raw + step.dt * s.inverse_mass * s.total();
   };
   const auto set = [&](int node, const NodeStep& s) {
-    const double flip = 1.0 - step.alpha;
-    quad(g.update + 4 * node) = Quad(step.dt * s.after[0], step.dt * s.after[1],
-                                     s.after[0] - flip * s.raw[0], s.after[1] - flip * s.raw[1]);
-    quad(g.momentum + 4 * node).setZero();
-    if (g.body != nullptr) quad(g.body + 4 * node).setZero();
+    const Pair moved = step.dt * s.after, gained = s.after - (1.0 - step.alpha) * s.raw;
+    quad(g.update + 4 * node) = Quad{moved[0], moved[1], gained[0], gained[1]};
+    quad(g.momentum + 4 * node) = Quad{};
+    if (g.body != nullptr) quad(g.body + 4 * node) = Quad{};
   };
   for_each_node(
       g, row,

@@ -1,6 +1,8 @@
 // Sums of point values at the nodes.
 #pragma once
 
+#include <cstddef>
+
 #include "../tensor.hpp"
 #include "weights.hpp"
 
@@ -11,7 +13,7 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 template <class Shape>
 class NodeSums {
  public:
-  NodeSums(double* field, int stride) : field_(field), stride_(stride) {}
+  NodeSums(double* field, std::ptrdiff_t stride) : field_(field), stride_(stride) {}
   NodeSums(const NodeSums&) = delete;
   NodeSums& operator=(const NodeSums&) = delete;
   ~NodeSums() { store(); }
@@ -21,73 +23,89 @@ class NodeSums {
     if (first == first_) return;
     store();
     first_ = first;
+#pragma GCC unroll 8
     for (auto& row : sum_)
-      for (Quad& node : row) node.setZero();
+#pragma GCC unroll 8
+      for (Quad& node : row) node = Quad{};
   }
 
-  void add(int row, int column, const Quad& value) { sum_[row][column] += value; }
+  void add(int row, int column, Quad value) { sum_[row][column] += value; }
 
  private:
   void store() {
     if (first_ < 0) return;
-    for (int j = 0; j < Shape::nodes; ++j)
-      for (int i = 0; i < Shape::nodes; ++i)
-        quad(field_ + 4 * (first_ + j * stride_ + i)) += sum_[j][i];
+    double* row = field_ + 4 * first_;
+#pragma GCC unroll 8
+    for (int j = 0; j < Shape::nodes; ++j, row += 4 * stride_)
+#pragma GCC unroll 8
+      for (int i = 0; i < Shape::nodes; ++i) quad(row + 4 * i) += sum_[j][i];
   }
 
   double* field_;
-  int stride_;
-  int first_ = -1;
+  std::ptrdiff_t stride_, first_ = -1;
   Quad sum_[Shape::nodes][Shape::nodes];
 };
 
 /// Mass and momentum at the nodes (paper eq. 18-19), from weights at the points' present places.
 template <class Shape>
-void scatter_momentum(const View& view, int begin, int n, const Weights<Shape>& weights) {
-  const double* motion = view.points.motion + 4 * begin;
+void scatter_momentum(const View& view, int begin, int n,
+                      const Weights<Shape, Need::values>& weights) {
+  const double* vx = view.points.vx + begin;
+  const double* vy = view.points.vy + begin;
   const double* mass = view.points.mass + begin;
-  const Quad masses(1.0, 1.0, 0.0, 0.0), velocities(0.0, 0.0, 1.0, 1.0);
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const Quad point = mass[k] * (velocities * quad(motion + 4 * k) + masses);
+    const Quad point{mass[k], mass[k], mass[k] * vx[k], mass[k] * vy[k]};
     nodes.move_to(weights.first[k]);
+#pragma GCC unroll 8
     for (int j = 0; j < Shape::nodes; ++j) {
-      const Quad row = point * weights.y[j][k];
-      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.x[i][k]);
+      const Quad row = point * weights.value_y(j, k);
+#pragma GCC unroll 8
+      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.value_x(i, k));
     }
   }
 }
 
 /// Body forces at the nodes: sum of S m b (paper eq. 12, the first term).
 template <class Shape>
-void scatter_body_forces(const View& view, int begin, int n, const Weights<Shape>& weights) {
-  const double* force = view.points.body_force + 2 * begin;
+void scatter_body_forces(const View& view, int begin, int n,
+                         const Weights<Shape, Need::gradients>& weights) {
+  const double* bx = view.points.body_force[0] + begin;
+  const double* by = view.points.body_force[1] + begin;
   const double* mass = view.points.mass + begin;
   NodeSums<Shape> nodes(view.grid.body, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const Quad point(mass[k] * force[2 * k], mass[k] * force[2 * k + 1], 0.0, 0.0);
+    const Quad point = mass[k] * Quad{bx[k], by[k], 0.0, 0.0};
     nodes.move_to(weights.first[k]);
+#pragma GCC unroll 8
     for (int j = 0; j < Shape::nodes; ++j) {
-      const Quad row = point * weights.y[j][k];
-      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.x[i][k]);
+      const Quad row = point * weights.value_y(j, k);
+#pragma GCC unroll 8
+      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.value_x(i, k));
     }
   }
 }
 
-/// Internal forces at the nodes (paper eq. 11): -V sigma grad S, with forces[k] = -V / h
-/// {xx, xy, xy, yy}.
+/// -V / h times the stresses in the plane, of the points of a block.
+struct PointForces {
+  alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
+};
+
+/// Internal forces at the nodes (paper eq. 11): -V sigma grad S.
 template <class Shape>
-void scatter_forces(const View& view, int n, const Weights<Shape>& weights, const double* forces) {
+void scatter_forces(const View& view, int n, const Weights<Shape, Need::gradients>& weights,
+                    const PointForces& forces) {
   NodeSums<Shape> nodes(view.grid.force, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const Quad point = quad(forces + 4 * k);
+    const Quad point{forces.xx[k], forces.xy[k], forces.xy[k], forces.yy[k]};
     Quad x[Shape::nodes];
-    for (int i = 0; i < Shape::nodes; ++i)
-      x[i] = Quad(weights.dx[i][k], weights.x[i][k], weights.dx[i][k], weights.x[i][k]);
+#pragma GCC unroll 8
+    for (int i = 0; i < Shape::nodes; ++i) x[i] = twice(weights.pair_x(i, k));
     nodes.move_to(weights.first[k]);
+#pragma GCC unroll 8
     for (int j = 0; j < Shape::nodes; ++j) {
-      const Quad y(weights.y[j][k], weights.dy[j][k], weights.y[j][k], weights.dy[j][k]);
-      const Quad row = point * y;
+      const Quad row = point * twice(weights.pair_y(j, k));
+#pragma GCC unroll 8
       for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * x[i]);
     }
   }

@@ -14,55 +14,65 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 /// What the short loops over a block hand to each other.
 struct Strains {
-  alignas(64) double gradient[4 * kBlock];  // h {dvx/dx, dvx/dy, dvy/dx, dvy/dy}
-  double xx[kBlock], yy[kBlock], xy[kBlock];
+  alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
   double turn[kBlock], cosine[kBlock], sine[kBlock];  // of twice the angle
+};
+
+/// h times the velocity gradient of the points of a block.
+struct Gradient {
+  alignas(kCacheLine) double vx_x[kBlock], vx_y[kBlock], vy_x[kBlock], vy_y[kBlock];
 };
 
 /// Velocity gradient (paper eq. 21-22).
 template <class Shape>
-void gather_gradient(const View& view, int n, const Weights<Shape>& weights, double* gradient) {
+void gather_gradient(const View& view, int n, const Weights<Shape, Need::gradients>& weights,
+                     Gradient& gradient) {
   const double* velocity = view.grid.velocity;
   const int stride = view.grid.stride;
   for (int k = 0; k < n; ++k) {
     Quad x[Shape::nodes];
-    for (int i = 0; i < Shape::nodes; ++i)
-      x[i] = Quad(weights.dx[i][k], weights.x[i][k], weights.dx[i][k], weights.x[i][k]);
+    for (int i = 0; i < Shape::nodes; ++i) x[i] = twice(weights.pair_x(i, k));
     const double* first = velocity + 4 * weights.first[k];
-    Quad sum = Quad::Zero();
+    Quad sum{};
     for (int j = 0; j < Shape::nodes; ++j) {
       const double* row = first + 4 * j * stride;
       Quad along = x[0] * quad(row);
       for (int i = 1; i < Shape::nodes; ++i) along += x[i] * quad(row + 4 * i);
-      sum += along * Quad(weights.y[j][k], weights.dy[j][k], weights.y[j][k], weights.dy[j][k]);
+      sum += along * twice(weights.pair_y(j, k));
     }
-    quad(gradient + 4 * k) = sum;
+    gradient.vx_x[k] = sum[0];
+    gradient.vx_y[k] = sum[1];
+    gradient.vy_x[k] = sum[2];
+    gradient.vy_y[k] = sum[3];
   }
 }
 
 /// F <- (I + L dt) F.
-inline void update_deformation(int n, const double* gradient, double factor, double* deformation) {
+inline void update_deformation(const View& view, int begin, int n, const Gradient& l, double dt) {
+  const double factor = dt / view.grid.cell;
+  double* const* f = view.points.deformation;
+  double *xx = f[0] + begin, *xy = f[1] + begin, *yx = f[2] + begin, *yy = f[3] + begin;
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
-    const double* l = gradient + 4 * k;
-    double* f = deformation + 4 * k;
-    const double xx = f[0], xy = f[1], yx = f[2], yy = f[3];
-    f[0] += factor * (l[0] * xx + l[1] * yx);
-    f[1] += factor * (l[0] * xy + l[1] * yy);
-    f[2] += factor * (l[2] * xx + l[3] * yx);
-    f[3] += factor * (l[2] * xy + l[3] * yy);
+    const double fxx = xx[k], fxy = xy[k], fyx = yx[k], fyy = yy[k];
+    xx[k] += factor * (l.vx_x[k] * fxx + l.vx_y[k] * fyx);
+    xy[k] += factor * (l.vx_x[k] * fxy + l.vx_y[k] * fyy);
+    yx[k] += factor * (l.vy_x[k] * fxx + l.vy_y[k] * fyx);
+    yy[k] += factor * (l.vy_x[k] * fxy + l.vy_y[k] * fyy);
   }
 }
 
 /// Strain increments, volumes, and the angle of the rotation.
-inline void update_volume(const View& view, int begin, int n, double dt, Strains& s) {
+inline void update_volume(const View& view, int begin, int n, double dt, const Gradient& l,
+                          Strains& s) {
   const double factor = dt / view.grid.cell;
   double* volume = view.points.volume + begin;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
-    s.xx[k] = factor * s.gradient[4 * k];
-    s.yy[k] = factor * s.gradient[4 * k + 3];
-    s.xy[k] = 0.5 * factor * (s.gradient[4 * k + 1] + s.gradient[4 * k + 2]);
-    s.turn[k] = factor * (s.gradient[4 * k + 2] - s.gradient[4 * k + 1]);
+    s.xx[k] = factor * l.vx_x[k];
+    s.yy[k] = factor * l.vy_y[k];
+    s.xy[k] = 0.5 * factor * (l.vx_y[k] + l.vy_x[k]);
+    s.turn[k] = factor * (l.vy_x[k] - l.vx_y[k]);
   }
   if (view.volume_update == VolumeUpdate::linear) {
 #pragma omp simd
@@ -95,32 +105,31 @@ void update_stress(const View& view, int begin, int n, const Constants& law, con
   }
 }
 
-inline void point_forces(const View& view, int begin, int n, double* forces) {
+inline void point_forces(const View& view, int begin, int n, PointForces& forces) {
   const PointsView& p = view.points;
+  const double *volume = p.volume + begin, *xx = p.stress_xx + begin;
+  const double *yy = p.stress_yy + begin, *xy = p.stress_xy + begin;
   const double per_cell = -1.0 / view.grid.cell;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
-    const double volume = per_cell * p.volume[begin + k];
-    const double shear = volume * p.stress_xy[begin + k];
-    forces[4 * k] = volume * p.stress_xx[begin + k];
-    forces[4 * k + 1] = shear;
-    forces[4 * k + 2] = shear;
-    forces[4 * k + 3] = volume * p.stress_yy[begin + k];
+    const double factor = per_cell * volume[k];
+    forces.xx[k] = factor * xx[k];
+    forces.yy[k] = factor * yy[k];
+    forces.xy[k] = factor * xy[k];
   }
 }
 
 /// Volume, deformation and stress of a block after its strain increments.
 inline void deform_block(const View& view, const StepInput& input, const Block& block,
-                         Strains& strains, Ledger& ledger) {
+                         const Gradient& gradient, Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
   const Law& law = view.laws[block.material];
+  Strains strains;
   StressBefore before;
   if (view.ledger != nullptr) remember(view, begin, n, before);
-  if (view.points.deformation != nullptr) {
-    update_deformation(n, strains.gradient, input.dt / view.grid.cell,
-                       view.points.deformation + 4 * begin);
-  }
-  update_volume(view, begin, n, input.dt, strains);
+  if (view.points.deformation[0] != nullptr)
+    update_deformation(view, begin, n, gradient, input.dt);
+  update_volume(view, begin, n, input.dt, gradient, strains);
   rotation(n, strains.turn, strains.cosine, strains.sine);
   with_constants(law,
                  [&](const auto& constants) { update_stress(view, begin, n, constants, strains); });
@@ -131,14 +140,15 @@ inline void deform_block(const View& view, const StepInput& input, const Block& 
 template <class Shape, bool kOwnDomain>
 void stress_block(const View& view, const StepInput& input, const Block& block, Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
-  Weights<Shape> weights;
-  Strains strains;
-  evaluate<Shape, kOwnDomain, Need::gradients>(view, begin, n, weights);
-  gather_gradient(view, n, weights, strains.gradient);
-  deform_block(view, input, block, strains, ledger);
-  point_forces(view, begin, n, strains.gradient);
-  scatter_forces(view, n, weights, strains.gradient);
-  if (view.points.body_force != nullptr) scatter_body_forces(view, begin, n, weights);
+  Weights<Shape, Need::gradients> weights;
+  Gradient gradient;
+  PointForces forces;
+  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+  gather_gradient(view, n, weights, gradient);
+  deform_block(view, input, block, gradient, ledger);
+  point_forces(view, begin, n, forces);
+  scatter_forces(view, n, weights, forces);
+  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

@@ -6,25 +6,54 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// One array a node, so that the loops over the points of a block vectorise. Derivatives are times
-/// the cell size.
+enum class Need { values, gradients };  // gradients: values and derivatives
+
+/// Shape functions of the points of a block along both axes, one array a node. Derivatives are
+/// times the cell size.
+template <class Shape, Need kNeed>
+struct Weights;
+
 template <class Shape>
-struct Weights {
-  static constexpr int nodes = Shape::nodes;
-  int first[kBlock];  // index of the lower left node
-  double x[nodes][kBlock], y[nodes][kBlock];
-  double dx[nodes][kBlock], dy[nodes][kBlock];
+struct Weights<Shape, Need::values> {
+  alignas(kCacheLine) int first[kBlock];  // index of the lower left node
+  double x[Shape::nodes][kBlock], y[Shape::nodes][kBlock];
+
+  double value_x(int i, int k) const { return x[i][k]; }
+  double value_y(int j, int k) const { return y[j][k]; }
+  void set_x(int i, int k, double value, double /*derivative*/) { x[i][k] = value; }
+  void set_y(int j, int k, double value, double /*derivative*/) { y[j][k] = value; }
 };
 
-enum class Need { values, gradients };  // gradients: values and derivatives
+/// {derivative, value} along x and {value, derivative} along y, so that their products are those
+/// that a gradient takes.
+template <class Shape>
+struct Weights<Shape, Need::gradients> {
+  alignas(kCacheLine) int first[kBlock];
+  double x[Shape::nodes][2 * kBlock], y[Shape::nodes][2 * kBlock];
+
+  double value_x(int i, int k) const { return x[i][2 * k + 1]; }
+  double value_y(int j, int k) const { return y[j][2 * k]; }
+  const double* pair_x(int i, int k) const { return x[i] + 2 * k; }
+  const double* pair_y(int j, int k) const { return y[j] + 2 * k; }
+  void set_x(int i, int k, double value, double derivative) {
+    x[i][2 * k] = derivative;
+    x[i][2 * k + 1] = value;
+  }
+  void set_y(int j, int k, double value, double derivative) {
+    y[j][2 * k] = value;
+    y[j][2 * k + 1] = derivative;
+  }
+};
 
 /// Shape functions of the n points from `begin` on. With kOwnDomain each point has its own
 /// half-lengths, otherwise all share one.
 template <class Shape, bool kOwnDomain, Need kNeed>
-void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
+void evaluate(const View& view, int begin, int n, Weights<Shape, kNeed>& out) {
   const GridView& grid = view.grid;
-  const double* motion = view.points.motion + 4 * begin;
-  const double* half_length = kOwnDomain ? view.points.half_length + 2 * begin : nullptr;
+  const double* px = view.points.x + begin;
+  const double* py = view.points.y + begin;
+  const double* lx = kOwnDomain ? view.points.half_length[0] + begin : nullptr;
+  const double* ly = kOwnDomain ? view.points.half_length[1] + begin : nullptr;
   const double per_cell = 1.0 / grid.cell;
   const double left = grid.left, bottom = grid.bottom;
   const double stride = grid.stride;
@@ -35,27 +64,21 @@ void evaluate(const View& view, int begin, int n, Weights<Shape>& out) {
     double width_x = common, width_y = common;
     double inverse_x = common_inverse, inverse_y = common_inverse;
     if constexpr (kOwnDomain) {
-      width_x = 2.0 * half_length[2 * k] * per_cell;
-      width_y = 2.0 * half_length[2 * k + 1] * per_cell;
+      width_x = 2.0 * lx[k] * per_cell;
+      width_y = 2.0 * ly[k] * per_cell;
       inverse_x = 1.0 / width_x;
       inverse_y = 1.0 / width_y;
     }
-    const double x = (motion[4 * k] - left) * per_cell - 0.5 * width_x;
-    const double y = (motion[4 * k + 1] - bottom) * per_cell - 0.5 * width_y;
+    const double x = (px[k] - left) * per_cell - 0.5 * width_x;
+    const double y = (py[k] - bottom) * per_cell - 0.5 * width_y;
     const double column = static_cast<int>(x), row = static_cast<int>(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
 
     double w[Shape::nodes], d[Shape::nodes];
     Shape::evaluate(x - column, width_x, inverse_x, w, d);
-    for (int i = 0; i < Shape::nodes; ++i) {
-      out.x[i][k] = w[i];
-      if constexpr (kNeed == Need::gradients) out.dx[i][k] = d[i];
-    }
+    for (int i = 0; i < Shape::nodes; ++i) out.set_x(i, k, w[i], d[i]);
     Shape::evaluate(y - row, width_y, inverse_y, w, d);
-    for (int i = 0; i < Shape::nodes; ++i) {
-      out.y[i][k] = w[i];
-      if constexpr (kNeed == Need::gradients) out.dy[i][k] = d[i];
-    }
+    for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);
   }
 }
 
