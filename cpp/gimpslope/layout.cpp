@@ -65,12 +65,13 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
   // Blocks begin on cache lines where they can, which full ones of kBlock points do.
   constexpr int kLine = kCacheLine / sizeof(double);
   static_assert(kBlock % kLine == 0);
+  const int rows = slab_rows(reach);
   Layout layout;
   for (int k = 0; k < points.size; ++k) {
     const std::int32_t point = order[k];
-    const int slab = row(point) / kSlabRows;
+    const int slab = row(point) / rows;
     const std::int32_t material = points.material[point];
-    const bool new_slab = k == 0 || slab != row(order[k - 1]) / kSlabRows;
+    const bool new_slab = k == 0 || slab != row(order[k - 1]) / rows;
     if (new_slab || layout.blocks.back().material != material ||
         (k - layout.blocks.back().begin > kBlock - kLine && k % kLine == 0)) {
       if (new_slab) {

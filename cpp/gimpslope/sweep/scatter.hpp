@@ -29,7 +29,17 @@ class NodeSums {
       for (Quad& node : row) node = Quad{};
   }
 
-  void add(int row, int column, Quad value) { sum_[row][column] += value; }
+  /// Adds point x(i) y(j) to node (i, j). GCC keeps the sums in registers only if told to
+  /// unroll.
+  template <class X, class Y>
+  void add(Quad point, X x, Y y) {
+#pragma GCC unroll 8
+    for (int j = 0; j < Shape::nodes; ++j) {
+      const Quad row = point * y(j);
+#pragma GCC unroll 8
+      for (int i = 0; i < Shape::nodes; ++i) sum_[j][i] += row * x(i);
+    }
+  }
 
  private:
   void store() {
@@ -55,14 +65,10 @@ void scatter_momentum(const View& view, int begin, int n,
   const double* mass = view.points.mass + begin;
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const Quad point{mass[k], mass[k], mass[k] * vx[k], mass[k] * vy[k]};
     nodes.move_to(weights.first[k]);
-#pragma GCC unroll 8
-    for (int j = 0; j < Shape::nodes; ++j) {
-      const Quad row = point * weights.value_y(j, k);
-#pragma GCC unroll 8
-      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.value_x(i, k));
-    }
+    nodes.add(
+        Quad{mass[k], mass[k], mass[k] * vx[k], mass[k] * vy[k]},
+        [&](int i) { return weights.value_x(i, k); }, [&](int j) { return weights.value_y(j, k); });
   }
 }
 
@@ -75,14 +81,10 @@ void scatter_body_forces(const View& view, int begin, int n,
   const double* mass = view.points.mass + begin;
   NodeSums<Shape> nodes(view.grid.body, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const Quad point = mass[k] * Quad{bx[k], by[k], 0.0, 0.0};
     nodes.move_to(weights.first[k]);
-#pragma GCC unroll 8
-    for (int j = 0; j < Shape::nodes; ++j) {
-      const Quad row = point * weights.value_y(j, k);
-#pragma GCC unroll 8
-      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * weights.value_x(i, k));
-    }
+    nodes.add(
+        mass[k] * Quad{bx[k], by[k], 0.0, 0.0}, [&](int i) { return weights.value_x(i, k); },
+        [&](int j) { return weights.value_y(j, k); });
   }
 }
 
@@ -97,17 +99,11 @@ void scatter_forces(const View& view, int n, const Weights<Shape, Need::gradient
                     const PointForces& forces) {
   NodeSums<Shape> nodes(view.grid.force, view.grid.stride);
   for (int k = 0; k < n; ++k) {
-    const Quad point{forces.xx[k], forces.xy[k], forces.xy[k], forces.yy[k]};
-    Quad x[Shape::nodes];
-#pragma GCC unroll 8
-    for (int i = 0; i < Shape::nodes; ++i) x[i] = twice(weights.pair_x(i, k));
     nodes.move_to(weights.first[k]);
-#pragma GCC unroll 8
-    for (int j = 0; j < Shape::nodes; ++j) {
-      const Quad row = point * twice(weights.pair_y(j, k));
-#pragma GCC unroll 8
-      for (int i = 0; i < Shape::nodes; ++i) nodes.add(j, i, row * x[i]);
-    }
+    nodes.add(
+        Quad{forces.xx[k], forces.xy[k], forces.xy[k], forces.yy[k]},
+        [&](int i) { return twice(weights.pair_x(i, k)); },
+        [&](int j) { return twice(weights.pair_y(j, k)); });
   }
 }
 
