@@ -14,7 +14,8 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 inline void update_domains(const View& view, int begin, int n) {
   const PointsView& p = view.points;
   double *lx = p.half_length[0] + begin, *ly = p.half_length[1] + begin;
-  const double *reference_x = p.domain_reference[0] + begin, *reference_y = p.domain_reference[1] + begin;
+  const double *reference_x = p.domain_reference[0] + begin,
+               *reference_y = p.domain_reference[1] + begin;
   const double* volume = p.volume + begin;
   switch (view.domain_update) {
     case DomainUpdate::none:

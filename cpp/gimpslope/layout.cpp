@@ -39,9 +39,38 @@ void sort_by(std::vector<std::int32_t>& order, int keys, Key key) {
   order.swap(sorted);
 }
 
+/// Makes the nodes active that points in these cells can reach before the next sort.
+void activate_reached(const std::vector<Cell>& cells, Cell low, Cell high, int reach, Grid& grid) {
+  const NodeRange none{high.column - low.column + 1, -1};
+  std::vector<NodeRange> columns(high.row - low.row + 1, none);  // of cells, both included
+  for (const Cell& cell : cells) {
+    NodeRange& range = columns[cell.row - low.row];
+    range = {std::min(range.begin, cell.column - low.column),
+             std::max(range.end, cell.column - low.column)};
+  }
+  const int beyond = reach + 2 * kMargin;  // first nodes lie the margin into the window
+  for (int row = 0; row < static_cast<int>(columns.size()); ++row) {
+    if (columns[row].end < 0) continue;
+    for (int j = 0; j < beyond; ++j)
+      grid.activate(row + j, {columns[row].begin, columns[row].end + beyond});
+  }
+}
+
+/// Shares of about as many points for each thread.
+void share_out(Layout& layout, int points, int threads) {
+  layout.shares.assign(1, 0);
+  for (std::int32_t slab = 0; slab < static_cast<std::int32_t>(layout.slabs.size()); ++slab) {
+    const std::int32_t before = layout.blocks[layout.slabs[slab].begin].begin;
+    const auto shares = static_cast<std::int64_t>(layout.shares.size());
+    if (before * std::int64_t{threads} >= shares * points) layout.shares.push_back(slab);
+  }
+  layout.shares.resize(threads + 1, static_cast<std::int32_t>(layout.slabs.size()));
+}
+
 }  // namespace
 
-Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials) {
+Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials,
+               int threads) {
   std::vector<Cell> cells = first_cells(points, grid, half_length);
   Cell low = cells.front(), high = cells.front();
   for (const Cell& cell : cells) {
@@ -76,17 +105,19 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
         (k - layout.blocks.back().begin > kBlock - kLine && k % kLine == 0)) {
       if (new_slab) {
         const auto block = static_cast<std::int32_t>(layout.blocks.size());
-        layout.slabs.resize(slab + 1, {block, block});
+        while (static_cast<int>(layout.slabs.size()) <= slab) {
+          const int first_row = static_cast<int>(layout.slabs.size()) * rows;
+          layout.slabs.push_back({block, block, first_row, first_row + rows});
+        }
       }
       layout.blocks.push_back({k, k, material});
     }
     layout.blocks.back().end = k + 1;
     layout.slabs.back().end = static_cast<std::int32_t>(layout.blocks.size());
-
-    const int column = cells[point].column - low.column;  // of the first node, less the margin
-    for (int j = 0; j < reach + 2 * kMargin; ++j)
-      grid.activate(row(point) + j, {column, column + reach + 2 * kMargin});
   }
+  activate_reached(cells, low, high, reach, grid);
+  layout.slabs.back().end_row = grid.rows();
+  share_out(layout, points.size, threads);
   points.reorder(order);
   return layout;
 }

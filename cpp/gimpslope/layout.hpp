@@ -12,11 +12,13 @@ namespace gimpslope {
 struct Layout {
   std::vector<Block> blocks;
   std::vector<Slab> slabs;
+  std::vector<std::int32_t> shares;  // first slab of each thread, and their number
 };
 
 /// Sorts the points by row, material and column of their first node, fits the grid's window to them
 /// with a margin, and marks the nodes that they can reach before the next sort.
 /// `half_length` holds for points without their own; `reach` is the number of nodes a direction.
-Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials);
+Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials,
+               int threads);
 
 }  // namespace gimpslope

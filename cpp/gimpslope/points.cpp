@@ -45,8 +45,8 @@ Points::Points(int n, bool own_domains, bool with_deformation)
 }
 
 void Points::reorder(const std::vector<std::int32_t>& order) {
-  for (Field* field : {&position, &velocity, &stress, &volume, &mass, &plastic_strain,
-                       &half_length, &domain_reference, &deformation, &body_force}) {
+  for (Field* field : {&position, &velocity, &stress, &volume, &mass, &plastic_strain, &half_length,
+                       &domain_reference, &deformation, &body_force}) {
     for (int c = 0; c < field->components(); ++c) permute((*field)[c], order, scratch_);
   }
   permute(material.data(), order, integer_scratch_);
@@ -54,9 +54,22 @@ void Points::reorder(const std::vector<std::int32_t>& order) {
 }
 
 PointsView Points::view() {
-  return {position[0], position[1], velocity[0], velocity[1], stress[0], stress[1], stress[2],
-          stress[3], volume[0], plastic_strain[0], mass[0], half_length[0], half_length[1],
-          domain_reference[0], domain_reference[1], {deformation[0], deformation[1], deformation[2], deformation[3]},
+  return {position[0],
+          position[1],
+          velocity[0],
+          velocity[1],
+          stress[0],
+          stress[1],
+          stress[2],
+          stress[3],
+          volume[0],
+          plastic_strain[0],
+          mass[0],
+          half_length[0],
+          half_length[1],
+          domain_reference[0],
+          domain_reference[1],
+          {deformation[0], deformation[1], deformation[2], deformation[3]},
           {body_force[0], body_force[1]}};
 }
 

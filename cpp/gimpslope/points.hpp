@@ -37,8 +37,8 @@ struct Points {
   Points(int n, bool own_domains, bool deformation);
 
   int size;
-  Field position, velocity;     // x, y
-  Field stress;                 // xx, yy, zz, xy
+  Field position, velocity;  // x, y
+  Field stress;              // xx, yy, zz, xy
   Field volume, mass, plastic_strain;
   Field half_length;       // x, y
   Field domain_reference;  // x, y

@@ -142,7 +142,8 @@ void Solver::prepare() {
   if (!sorted_) {
     const int nodes = method_.shape == ShapeKind::cpgimp ? reach(Basis::gimp_wide) : reach(basis_);
     try {
-      layout_ = arrange(points_, grid_, half_length_, nodes, static_cast<int>(laws_.size()));
+      layout_ = arrange(points_, grid_, half_length_, nodes, static_cast<int>(laws_.size()),
+                        method_.threads);
     } catch (const std::invalid_argument& scattered) {
       if (steps_ == 0) throw;
       fail(scattered.what(), -1);
@@ -379,6 +380,7 @@ View Solver::view() {
           layout_.blocks.data(),
           layout_.slabs.data(),
           static_cast<int>(layout_.slabs.size()),
+          layout_.shares.data(),
           laws_.data(),
           half_length_,
           method_.domain_update,

@@ -27,9 +27,9 @@ void advance(std::atomic<std::uint32_t>& counter) {
 
 }  // namespace
 
-Team::Team(int size) : size_(size), spins_(spins_of(size)) {
+Team::Team(int size) : size_(size), spins_(spins_of(size)), queues_(size) {
   try {
-    for (int k = 1; k < size; ++k) threads_.emplace_back([this] { work(); });
+    for (int k = 1; k < size; ++k) threads_.emplace_back([this, k] { work(k); });
   } catch (const std::system_error&) {
     const std::size_t started = threads_.size() + 1;
     leave();
@@ -46,21 +46,21 @@ void Team::leave() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-int Team::claim() { return next_.fetch_add(1, std::memory_order_relaxed); }
+int Team::claim(int queue) { return queues_[queue].next.fetch_add(1, std::memory_order_relaxed); }
 
-void Team::run(void (*job)(void*), void* context) {
+void Team::run(void (*job)(void*, int), void* context) {
   job_ = job;
   context_ = context;
   if (size_ > 1) advance(jobs_);
-  job(context);
+  job(context, 0);
   barrier();
 }
 
-void Team::work() {
+void Team::work(int thread) {
   for (std::uint32_t done = 0;; ++done) {
     wait_for_change(jobs_, done, spins_);
     if (leaving_) return;
-    job_(context_);
+    job_(context_, thread);
     barrier();
   }
 }
@@ -72,7 +72,7 @@ void Team::barrier() {
     return;
   }
   arrived_.store(0, std::memory_order_relaxed);
-  next_.store(0, std::memory_order_relaxed);
+  for (Queue& queue : queues_) queue.next.store(0, std::memory_order_relaxed);
   if (size_ > 1) advance(meets_);
 }
 

@@ -6,6 +6,8 @@
 #include <thread>
 #include <vector>
 
+#include "buffer.hpp"
+
 namespace gimpslope {
 
 /// A fixed number of threads, this one included, that run a job and meet at barriers in between.
@@ -18,29 +20,36 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  /// Calls job(context) on every thread; returns when all are done. The job must not throw.
-  void run(void (*job)(void*), void* context);
+  int size() const { return size_; }
 
-  /// For jobs: the next index of the loop that the team is in, each given once.
-  int claim();
+  /// Calls job(context, thread) on every thread; returns when all are done. The job must not throw.
+  void run(void (*job)(void*, int), void* context);
+
+  /// For jobs: the next index of a queue of the loop that the team is in, each given once. There is
+  /// one queue a thread.
+  int claim(int queue);
 
   /// For jobs: waits for all threads, which ends the loop and begins the next one at index 0.
   void barrier();
 
  private:
-  void work();
+  struct alignas(kCacheLine) Queue {
+    std::atomic<int> next{0};
+  };
+
+  void work(int thread);
   void leave();
 
   int size_;
   int spins_;
   std::vector<std::thread> threads_;
-  void (*job_)(void*) = nullptr;
+  void (*job_)(void*, int) = nullptr;
   void* context_ = nullptr;
   bool leaving_ = false;
   std::atomic<std::uint32_t> jobs_{0};   // started so far
   std::atomic<std::uint32_t> meets_{0};  // barriers passed so far
   std::atomic<int> arrived_{0};
-  std::atomic<int> next_{0};
+  std::vector<Queue> queues_;
 };
 
 }  // namespace gimpslope

@@ -16,9 +16,9 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Four doubles that are loaded, multiplied and added as one: what a node keeps together. The vector
-/// extension of GCC and Clang, since they lay out an Eigen array that is put together from parts by
-/// way of memory, which costs a fifth of the speed.
+/// Four doubles that are loaded, multiplied and added as one: what a node keeps together. The
+/// vector extension of GCC and Clang, since they lay out an Eigen array that is put together from
+/// parts by way of memory, which costs a fifth of the speed.
 using Quad [[gnu::vector_size(4 * sizeof(double))]] = double;
 
 /// The same in memory that holds doubles.

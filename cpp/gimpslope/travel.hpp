@@ -13,9 +13,9 @@ constexpr double kTravelBetweenSorts = 0.5;
 constexpr int kMargin = 1;
 static_assert(kFarthestStep + kTravelBetweenSorts <= kMargin);
 
-/// Rows of cells in a slab whose points reach that many nodes a direction: as few as will do for two
-/// slabs with one between them to share no node. The last row that the first slab reaches is then
-/// rows - 1 + kMargin + reach - 1, the first one of the other 2 rows - kMargin.
+/// Rows of cells in a slab whose points reach that many nodes a direction: as few as will do for
+/// two slabs with one between them to share no node. The last row that the first slab reaches is
+/// then rows - 1 + kMargin + reach - 1, the first one of the other 2 rows - kMargin.
 constexpr int slab_rows(int reach) { return reach + 2 * kMargin - 1; }
 
 /// Nodes a direction that a point reaches at most.

@@ -22,9 +22,10 @@ struct Block {
 };
 constexpr int kBlock = 64;
 
-/// Consecutive blocks whose points start in the same few rows of cells.
+/// Consecutive blocks whose points start in the same few rows of cells, and these rows of nodes.
 struct Slab {
   std::int32_t begin, end;
+  std::int32_t first_row, end_row;
 };
 
 /// One value a point and component, in storage order. Half-lengths and their reference, the rows of
@@ -70,8 +71,9 @@ struct View {
   const Block* blocks;
   const Slab* slabs;
   int slab_count;
-  const Law* laws;     // of each material
-  double half_length;  // of all points alike, where points.half_length is null
+  const std::int32_t* shares;  // slabs [shares[t], shares[t + 1]) are those of thread t
+  const Law* laws;             // of each material
+  double half_length;          // of all points alike, where points.half_length is null
   DomainUpdate domain_update;
   VolumeUpdate volume_update;
   Team* team;

@@ -14,8 +14,8 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 template <class Shape, bool kOwnDomain>
 struct Usf {
   static void prepare(const View& view) {
-    together(*view.team, [&] {
-      for_each_slab(view, [&](int slab) {
+    together(*view.team, [&](int thread) {
+      for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
           Weights<Shape, Need::values> weights;
           evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
@@ -26,19 +26,19 @@ struct Usf {
   }
 
   static void step(const View& view, const StepInput& input, Report* reports) {
-    together(*view.team, [&] {
-      for_each_row(view, [&](int row) {
+    together(*view.team, [&](int thread) {
+      for_each_row(view, thread, [&](int row) {
         start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
       });
-      update_stresses(view, input, reports);
-      for_each_row(view, [&](int row) {
+      update_stresses(view, thread, input, reports);
+      for_each_row(view, thread, [&](int row) {
         if (view.ledger != nullptr) {
           finish_nodes<true>(view.grid, row, input, view.ledger + row);
         } else {
           finish_nodes<false>(view.grid, row, input, nullptr);
         }
       });
-      for_each_slab(view, [&](int slab) {
+      for_each_slab(view, thread, [&](int slab) {
         Report report;
         report.ledger = reports[slab].ledger;
         for_each_block(view, slab, [&](const Block& block) {
@@ -50,16 +50,17 @@ struct Usf {
   }
 
  private:
-  static void update_stresses(const View& view, const StepInput& input, Report* reports) {
+  static void update_stresses(const View& view, int thread, const StepInput& input,
+                              Report* reports) {
     const bool averaged = view.grid.cells != nullptr;
     if (averaged) {
-      for_each_slab(view, [&](int slab) {
+      for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
           dilatation_block<Shape, kOwnDomain>(view, block);
         });
       });
     }
-    for_each_slab(view, [&](int slab) {
+    for_each_slab(view, thread, [&](int slab) {
       Ledger ledger;
       for_each_block(view, slab, [&](const Block& block) {
         if (averaged) {
@@ -71,7 +72,7 @@ struct Usf {
       reports[slab].ledger = ledger;
     });
     if (averaged) {
-      for_each_slab(view, [&](int slab) {
+      for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
           averaged_force_block<Shape, kOwnDomain>(view, block);
         });

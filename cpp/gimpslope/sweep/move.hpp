@@ -87,9 +87,9 @@ inline void move_points(const View& view, int begin, int n, double alpha, const 
 
 /// How the half-lengths of a block changed along one axis.
 struct Growth {
-  double largest = 0.0;   // change of a half-length, m, either way
+  double largest = 0.0;                  // change of a half-length, m, either way
   double narrowest = 0.0, widest = 0.0;  // half-length, m
-  bool known = false;   // none is NaN
+  bool known = false;                    // none is NaN
 };
 
 inline Growth growth_of(int n, const double* before, const double* after) {

@@ -41,8 +41,8 @@ inline void add_speeds(const View& view, const Block& block, Speeds& largest) {
 
 /// The speeds of all points, in the report of each slab.
 inline void measure_speeds(const View& view, Report* reports) {
-  together(*view.team, [&] {
-    for_each_slab(view, [&](int slab) {
+  together(*view.team, [&](int thread) {
+    for_each_slab(view, thread, [&](int slab) {
       Speeds speeds;
       for_each_block(view, slab, [&](const Block& block) { add_speeds(view, block, speeds); });
       reports[slab].speeds = speeds;

@@ -127,8 +127,7 @@ inline void deform_block(const View& view, const StepInput& input, const Block& 
   Strains strains;
   StressBefore before;
   if (view.ledger != nullptr) remember(view, begin, n, before);
-  if (view.points.deformation[0] != nullptr)
-    update_deformation(view, begin, n, gradient, input.dt);
+  if (view.points.deformation[0] != nullptr) update_deformation(view, begin, n, gradient, input.dt);
   update_volume(view, begin, n, input.dt, gradient, strains);
   rotation(n, strains.turn, strains.cosine, strains.sine);
   with_constants(law,
