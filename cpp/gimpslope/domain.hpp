@@ -11,12 +11,13 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 /// New half-lengths of the n points from `begin` on. The reference is the initial half-length; for
 /// the jacobian, divided by the root of the initial volume.
-inline void update_domains(const View& view, int begin, int n) {
-  const PointsView& p = view.points;
-  double *lx = p.half_length[0] + begin, *ly = p.half_length[1] + begin;
-  const double *reference_x = p.domain_reference[0] + begin,
-               *reference_y = p.domain_reference[1] + begin;
-  const double* volume = p.volume + begin;
+template <class Real>
+void update_domains(const View<Real>& view, int begin, int n) {
+  const PointsView<Real>& p = view.points;
+  Real *lx = p.half_length[0] + begin, *ly = p.half_length[1] + begin;
+  const Real *reference_x = p.domain_reference[0] + begin,
+             *reference_y = p.domain_reference[1] + begin;
+  const Real* volume = p.volume + begin;
   switch (view.domain_update) {
     case DomainUpdate::none:
       return;
@@ -29,8 +30,8 @@ inline void update_domains(const View& view, int begin, int n) {
       }
       return;
     case DomainUpdate::stretch: {
-      const double *fxx = p.deformation[0] + begin, *fxy = p.deformation[1] + begin;
-      const double *fyx = p.deformation[2] + begin, *fyy = p.deformation[3] + begin;
+      const Real *fxx = p.deformation[0] + begin, *fxy = p.deformation[1] + begin;
+      const Real *fyx = p.deformation[2] + begin, *fyy = p.deformation[3] + begin;
 #pragma omp simd
       for (int k = 0; k < n; ++k) {
         // Polar decomposition in 2D: U = (C + J I) / sqrt(tr C + 2 J), C = F^T F.
@@ -44,7 +45,7 @@ inline void update_domains(const View& view, int begin, int n) {
       return;
     }
     case DomainUpdate::deformation_diagonal: {
-      const double *fxx = p.deformation[0] + begin, *fyy = p.deformation[3] + begin;
+      const Real *fxx = p.deformation[0] + begin, *fyy = p.deformation[3] + begin;
 #pragma omp simd
       for (int k = 0; k < n; ++k) {
         lx[k] = reference_x[k] * fxx[k];

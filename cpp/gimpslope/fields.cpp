@@ -22,47 +22,43 @@ Stress stress_of(const Points& p, int k) {
 }  // namespace
 
 Energies Solver::energies() const {
+  const Points& p = points();
   Energies sum{};
   double fastest = 0.0;
-  for (int k = 0; k < points_.size; ++k) {
-    const double mass = points_.mass[0][k], square = squared_speed(k);
+  for (int k = 0; k < p.size; ++k) {
+    const double mass = p.mass[0][k], square = squared_speed(p, k);
     fastest = std::max(fastest, square);
     sum.kinetic += 0.5 * mass * square;
-    sum.potential -=
-        mass * (gravity_.x * points_.position[0][k] + gravity_.y * points_.position[1][k]);
-    sum.elastic +=
-        points_.volume[0][k] * strain_energy(laws_[points_.material[k]], stress_of(points_, k));
+    sum.potential -= mass * (gravity_.x * p.position[0][k] + gravity_.y * p.position[1][k]);
+    sum.elastic += p.volume[0][k] * strain_energy(laws_[p.material[k]], stress_of(p, k));
   }
   sum.max_speed = std::sqrt(fastest);
   return sum;
 }
 
-double Solver::squared_speed(int k) const {
-  const double vx = points_.velocity[0][k], vy = points_.velocity[1][k];
-  return vx * vx + vy * vy;
-}
-
 double Solver::kinetic_energy() const {
+  const Points& p = points();
   double sum = 0.0;
-  for (int k = 0; k < points_.size; ++k) sum += 0.5 * points_.mass[0][k] * squared_speed(k);
+  for (int k = 0; k < p.size; ++k) sum += 0.5 * p.mass[0][k] * squared_speed(p, k);
   return sum;
 }
 
 double Solver::release_stress() {
+  Points& p = points();
   double released = 0.0;
-  for (int k = 0; k < points_.size; ++k) {
-    const int material = points_.material[k];
-    if (laws_[material].kind != LawKind::drucker_prager) continue;
-    const Stress before = stress_of(points_, k);
+  for (int k = 0; k < p.size; ++k) {
+    const Law& law = laws_[p.material[k]];
+    if (law.kind != LawKind::drucker_prager) continue;
+    const Stress before = stress_of(p, k);
     Stress after = before;
-    return_to_surface(laws_[material].drucker_prager, after, points_.plastic_strain[0][k]);
-    points_.stress[0][k] = after.xx;
-    points_.stress[1][k] = after.yy;
-    points_.stress[2][k] = after.zz;
-    points_.stress[3][k] = after.xy;
-    released += points_.volume[0][k] *
-                (strain_energy(laws_[material], before) - strain_energy(laws_[material], after));
+    return_to_surface(law.drucker_prager, after, p.plastic_strain[0][k]);
+    p.stress[0][k] = after.xx;
+    p.stress[1][k] = after.yy;
+    p.stress[2][k] = after.zz;
+    p.stress[3][k] = after.xy;
+    released += p.volume[0][k] * (strain_energy(law, before) - strain_energy(law, after));
   }
+  single_loaded_ = false;
   ledger_.plastic += released;
   return released;
 }
@@ -74,10 +70,10 @@ Ledger Solver::ledger() const {
 }
 
 FieldView Solver::field(const std::string& name) {
-  const auto all = [](Field& field) {
+  const auto all = [](Field<double>& field) {
     return FieldView{field[0], 1, field.stride(), field.components()};
   };
-  Points& p = points_;
+  Points& p = points();
   if (name == "position") return all(p.position);
   if (name == "velocity") return all(p.velocity);
   if (name == "stress") return all(p.stress);
@@ -100,18 +96,18 @@ FieldView Solver::field(const std::string& name) {
 
 /// Body forces take room, in points and nodes, from when one is first set or looked at.
 void Solver::keep_body_forces() {
-  if (!points_.body_force.empty()) return;
-  points_.body_force = Field(2, points_.size);
+  if (!points().body_force.empty()) return;
+  points().body_force = Field<double>(2, points().size);
   grid_.keep_body_forces();
   sorted_ = false;
 }
 
 std::vector<double> Solver::values(const std::string& name) {
-  if (name == "body_force" && points_.body_force.empty())
-    return std::vector<double>(2 * static_cast<std::size_t>(points_.size), 0.0);
+  if (name == "body_force" && points().body_force.empty())
+    return std::vector<double>(2 * static_cast<std::size_t>(size()), 0.0);
   const FieldView f = field(name);
-  std::vector<double> result(static_cast<std::size_t>(f.components) * points_.size);
-  for (int k = 0; k < points_.size; ++k)
+  std::vector<double> result(static_cast<std::size_t>(f.components) * size());
+  for (int k = 0; k < size(); ++k)
     for (int c = 0; c < f.components; ++c)
       result[static_cast<std::size_t>(f.components) * points_.number[k] + c] =
           f.data[k * f.point_stride + c * f.component_stride];
@@ -123,25 +119,26 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
                         name == "volume" || name == "plastic_strain" || name == "body_force";
   require(settable, "field", name,
           "one of position, velocity, stress, volume, plastic_strain, body_force");
-  check_values(values, static_cast<std::size_t>(field(name).components) * points_.size,
-               name == "volume", name.c_str());
+  check_values(values, static_cast<std::size_t>(field(name).components) * size(), name == "volume",
+               name.c_str());
   if (name == "position") grid_.check_reach(values);
   if (name == "plastic_strain") {
     for (const double value : values)
       require(value >= 0.0, "plastic_strain", value, "zero or positive");
   }
   const FieldView f = field(name);
-  for (int k = 0; k < points_.size; ++k)
+  for (int k = 0; k < size(); ++k)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
+  single_loaded_ = false;
   if (name != "body_force") nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;
 }
 
 std::vector<std::int32_t> Solver::material_of_points() const {
-  std::vector<std::int32_t> result(points_.size);
-  for (int k = 0; k < points_.size; ++k) result[points_.number[k]] = points_.material[k];
+  std::vector<std::int32_t> result(size());
+  for (int k = 0; k < size(); ++k) result[points_.number[k]] = points_.material[k];
   return result;
 }
 

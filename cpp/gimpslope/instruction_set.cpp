@@ -8,14 +8,17 @@
 namespace gimpslope {
 
 namespace generic {
-Kernel kernel(SchemeKind scheme, Basis basis);
+template <class Real>
+Kernel<Real> kernel(SchemeKind scheme, Basis basis);
 }
 #ifdef GIMPSLOPE_X86
 namespace x86_64_v3 {
-Kernel kernel(SchemeKind scheme, Basis basis);
+template <class Real>
+Kernel<Real> kernel(SchemeKind scheme, Basis basis);
 }
 namespace x86_64_v4 {
-Kernel kernel(SchemeKind scheme, Basis basis);
+template <class Real>
+Kernel<Real> kernel(SchemeKind scheme, Basis basis);
 }
 #endif
 
@@ -78,17 +81,21 @@ double widest(Basis basis) {
   }
 }
 
-Kernel find_kernel(InstructionSet set, SchemeKind scheme, Basis basis) {
+template <class Real>
+Kernel<Real> find_kernel(InstructionSet set, SchemeKind scheme, Basis basis) {
   switch (set) {
 #ifdef GIMPSLOPE_X86
     case InstructionSet::x86_64_v3:
-      return x86_64_v3::kernel(scheme, basis);
+      return x86_64_v3::kernel<Real>(scheme, basis);
     case InstructionSet::x86_64_v4:
-      return x86_64_v4::kernel(scheme, basis);
+      return x86_64_v4::kernel<Real>(scheme, basis);
 #endif
     default:
-      return generic::kernel(scheme, basis);
+      return generic::kernel<Real>(scheme, basis);
   }
 }
+
+template Kernel<double> find_kernel(InstructionSet set, SchemeKind scheme, Basis basis);
+template Kernel<float> find_kernel(InstructionSet set, SchemeKind scheme, Basis basis);
 
 }  // namespace gimpslope

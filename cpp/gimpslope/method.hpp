@@ -16,6 +16,9 @@ enum class VolumeUpdate { linear, exponential };
 /// nearly incompressible motion.
 enum class VolumetricStrain { point, cell_average };
 
+/// In which the points are kept; the grid, and what is computed on the way, is in double.
+enum class Precision { double_, single };
+
 /// Share of PIC in the velocity update (paper eq. 26: 0 is FLIP, 1 is PIC), given a step, as a
 /// kinematic viscosity in m2/s, or as a relaxation time in s. The last two do not depend on the
 /// step.
@@ -68,6 +71,7 @@ struct Method {
   VolumetricStrain volumetric_strain = VolumetricStrain::point;
   Blend blend;
   TimeStep time_step;
+  Precision precision = Precision::double_;
   int threads = 1;
   bool allow_unstable = false;
   bool ledger = false;  // keep account of every joule

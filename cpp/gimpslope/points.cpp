@@ -13,47 +13,32 @@ void permute(T* data, const std::vector<std::int32_t>& order, Buffer<T>& scratch
   std::copy_n(sorted, order.size(), data);
 }
 
+template <class Real>
 std::ptrdiff_t whole_lines(std::ptrdiff_t n) {
-  constexpr std::ptrdiff_t line = kCacheLine / sizeof(double);
+  constexpr std::ptrdiff_t line = kCacheLine / sizeof(Real);
   return (n + line - 1) / line * line;
 }
 
 }  // namespace
 
-Field::Field(int components, int points)
-    : components_(components), stride_(whole_lines(points)), values_(components * stride_) {}
+template <class Real>
+Field<Real>::Field(int components, int points)
+    : components_(components), stride_(whole_lines<Real>(points)), values_(components * stride_) {}
 
-Points::Points(int n, bool own_domains, bool with_deformation)
-    : size(n),
-      position(2, n),
-      velocity(2, n),
-      stress(4, n),
-      volume(1, n),
-      mass(1, n),
-      plastic_strain(1, n),
-      material(n),
-      number(n),
-      scratch_(n),
-      integer_scratch_(n) {
-  if (own_domains) half_length = domain_reference = Field(2, n);
-  if (with_deformation) {
-    deformation = Field(4, n);
-    std::fill_n(deformation[0], n, 1.0);
-    std::fill_n(deformation[3], n, 1.0);
-  }
-  std::iota(number.begin(), number.end(), 0);
+template <class Real>
+std::array<Field<Real>*, 10> State<Real>::fields() {
+  return {&position,       &velocity,    &stress,           &volume,      &mass,
+          &plastic_strain, &half_length, &domain_reference, &deformation, &body_force};
 }
 
-void Points::reorder(const std::vector<std::int32_t>& order) {
-  for (Field* field : {&position, &velocity, &stress, &volume, &mass, &plastic_strain, &half_length,
-                       &domain_reference, &deformation, &body_force}) {
-    for (int c = 0; c < field->components(); ++c) permute((*field)[c], order, scratch_);
-  }
-  permute(material.data(), order, integer_scratch_);
-  permute(number.data(), order, integer_scratch_);
+template <class Real>
+std::array<const Field<Real>*, 10> State<Real>::fields() const {
+  return {&position,       &velocity,    &stress,           &volume,      &mass,
+          &plastic_strain, &half_length, &domain_reference, &deformation, &body_force};
 }
 
-PointsView Points::view() {
+template <class Real>
+PointsView<Real> State<Real>::view() {
   return {position[0],
           position[1],
           velocity[0],
@@ -65,21 +50,101 @@ PointsView Points::view() {
           volume[0],
           plastic_strain[0],
           mass[0],
-          half_length[0],
-          half_length[1],
-          domain_reference[0],
-          domain_reference[1],
+          {half_length[0], half_length[1]},
+          {domain_reference[0], domain_reference[1]},
           {deformation[0], deformation[1], deformation[2], deformation[3]},
-          {body_force[0], body_force[1]}};
+          {body_force[0], body_force[1]},
+          nullptr};
+}
+
+template <class Real>
+std::int64_t State<Real>::bytes() const {
+  std::int64_t total = 0;
+  for (const Field<Real>* field : fields()) total += field->bytes();
+  return total;
+}
+
+template class Field<double>;
+template class Field<float>;
+template struct State<double>;
+template struct State<float>;
+
+Points::Points(int n, bool own_domains, bool with_deformation)
+    : size(n), material(n), number(n), scratch_(n), integer_scratch_(n) {
+  for (Field<double>* pair : {&position, &velocity}) *pair = Field<double>(2, n);
+  stress = Field<double>(4, n);
+  for (Field<double>* scalar : {&volume, &mass, &plastic_strain}) *scalar = Field<double>(1, n);
+  if (own_domains) half_length = domain_reference = Field<double>(2, n);
+  if (with_deformation) {
+    deformation = Field<double>(4, n);
+    std::fill_n(deformation[0], n, 1.0);
+    std::fill_n(deformation[3], n, 1.0);
+  }
+  std::iota(number.begin(), number.end(), 0);
+}
+
+void Points::reorder(const std::vector<std::int32_t>& order) {
+  for (Field<double>* field : fields())
+    for (int c = 0; c < field->components(); ++c) permute((*field)[c], order, scratch_);
+  permute(material.data(), order, integer_scratch_);
+  permute(number.data(), order, integer_scratch_);
 }
 
 std::int64_t Points::bytes() const {
-  std::int64_t total = sizeof(std::int32_t) *
-                       (material.capacity() + number.capacity() + integer_scratch_.capacity());
-  for (const Field* field : {&position, &velocity, &stress, &volume, &mass, &plastic_strain,
-                             &half_length, &domain_reference, &deformation, &body_force})
-    total += field->bytes();
-  return total + sizeof(double) * scratch_.capacity();
+  return State::bytes() + sizeof(double) * scratch_.capacity() +
+         sizeof(std::int32_t) *
+             (material.capacity() + number.capacity() + integer_scratch_.capacity());
+}
+
+void SinglePoints::load(const Points& points, const GridView& window) {
+  const int n = points.size;
+  origin_[0] = window.left;
+  origin_[1] = window.bottom;
+  cell_ = window.cell;
+  stride_ = window.stride;
+  home_.resize(n);
+  for (int k = 0; k < n; ++k) {
+    // Far enough to the left and below that no domain's edge comes to lie before it.
+    constexpr int back = 3;
+    const int column = static_cast<int>((points.position[0][k] - origin_[0]) / cell_) - back;
+    const int row = static_cast<int>((points.position[1][k] - origin_[1]) / cell_) - back;
+    home_[k] = std::max(row, 0) * stride_ + std::max(column, 0);
+  }
+  const auto from = points.fields();
+  const auto to = state_.fields();
+  for (std::size_t f = 0; f < from.size(); ++f) {
+    if (to[f]->components() != from[f]->components())
+      *to[f] = Field<float>(from[f]->components(), n);
+    for (int c = 0; c < from[f]->components(); ++c) std::copy_n((*from[f])[c], n, (*to[f])[c]);
+  }
+  for (int axis = 0; axis < 2; ++axis)
+    for (int k = 0; k < n; ++k)
+      state_.position[axis][k] = static_cast<float>(points.position[axis][k] - node(axis, k));
+}
+
+void SinglePoints::store(Points& points) const {
+  const auto from = state_.fields();
+  const auto to = points.fields();
+  for (std::size_t f = 0; f < from.size(); ++f)
+    for (int c = 0; c < from[f]->components(); ++c)
+      std::copy_n((*from[f])[c], points.size, (*to[f])[c]);
+  for (int axis = 0; axis < 2; ++axis)
+    for (int k = 0; k < points.size; ++k) points.position[axis][k] += node(axis, k);
+}
+
+double SinglePoints::node(int axis, int k) const {
+  const int line = axis == 0 ? home_[k] % stride_ : home_[k] / stride_;
+  return origin_[axis] + line * cell_;
+}
+
+PointsView<float> SinglePoints::view() {
+  PointsView<float> view = state_.view();
+  view.home = home_.data();
+  return view;
+}
+
+std::int64_t SinglePoints::bytes() const {
+  return state_.bytes() + sizeof(std::int32_t) * home_.capacity();
 }
 
 }  // namespace gimpslope

@@ -1,6 +1,7 @@
 // The material points: one array a component of each property, kept sorted by cell.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -12,6 +13,7 @@ namespace gimpslope {
 
 /// One property of all points: all first components, then all second ones, and so on, each from a
 /// cache line on.
+template <class Real>
 class Field {
  public:
   Field() = default;
@@ -20,42 +22,79 @@ class Field {
   bool empty() const { return components_ == 0; }
   int components() const { return components_; }
   std::ptrdiff_t stride() const { return stride_; }  // from one component to the next
-  double* operator[](int component) { return values_.data() + component * stride_; }
-  const double* operator[](int component) const { return values_.data() + component * stride_; }
-  void fill(double value) { values_.assign(values_.size(), value); }
-  std::int64_t bytes() const { return sizeof(double) * values_.capacity(); }
+  Real* operator[](int component) { return values_.data() + component * stride_; }
+  const Real* operator[](int component) const { return values_.data() + component * stride_; }
+  void fill(Real value) { values_.assign(values_.size(), value); }
+  std::int64_t bytes() const { return sizeof(Real) * values_.capacity(); }
 
  private:
   int components_ = 0;
   std::ptrdiff_t stride_ = 0;
-  Buffer<double> values_;
+  Buffer<Real> values_;
 };
 
-struct Points {
+/// What a step reads and writes of each point.
+template <class Real>
+struct State {
+  Field<Real> position, velocity;  // x, y
+  Field<Real> stress;              // xx, yy, zz, xy
+  Field<Real> volume, mass, plastic_strain;
+  Field<Real> half_length;       // x, y; empty where all are alike
+  Field<Real> domain_reference;  // x, y; as half_length
+  Field<Real> deformation;       // xx, xy, yx, yy; empty where no domain follows it
+  Field<Real> body_force;        // x, y, m/s2; empty until one is given
+
+  std::array<Field<Real>*, 10> fields();
+  std::array<const Field<Real>*, 10> fields() const;
+  PointsView<Real> view();
+  std::int64_t bytes() const;
+};
+
+struct Points : State<double> {
   /// Room for n points without state; a method whose domains are alike has no half-lengths, one
   /// that does not update them by F no deformation.
   Points(int n, bool own_domains, bool deformation);
 
   int size;
-  Field position, velocity;  // x, y
-  Field stress;              // xx, yy, zz, xy
-  Field volume, mass, plastic_strain;
-  Field half_length;       // x, y
-  Field domain_reference;  // x, y
-  Field deformation;       // xx, xy, yx, yy
-  Field body_force;        // x, y, m/s2; empty until one is given
   Buffer<std::int32_t> material;
   Buffer<std::int32_t> number;  // place of the point in the order in which it was given
 
   /// The point at order[k] comes to place k. Arrays stay where they are in memory.
   void reorder(const std::vector<std::int32_t>& order);
 
-  PointsView view();
   std::int64_t bytes() const;
 
  private:
   Buffer<double> scratch_;
   Buffer<std::int32_t> integer_scratch_;
+};
+
+/// m2/s2
+inline double squared_speed(const Points& points, int k) {
+  const double vx = points.velocity[0][k], vy = points.velocity[1][k];
+  return vx * vx + vy * vy;
+}
+
+/// The state of points in single precision while they are stepped. Places are counted from a node
+/// near each point, so that they keep their digits far from the origin.
+class SinglePoints {
+ public:
+  /// Takes the state of points that have just been sorted, for a window of nodes.
+  void load(const Points& points, const GridView& window);
+
+  /// Gives it back.
+  void store(Points& points) const;
+
+  PointsView<float> view();
+  std::int64_t bytes() const;
+
+ private:
+  double node(int axis, int k) const;  // coordinate of the node of point k, m
+
+  State<float> state_;
+  Buffer<std::int32_t> home_;  // index of the node
+  double origin_[2], cell_;
+  int stride_;
 };
 
 }  // namespace gimpslope

@@ -63,6 +63,7 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
       points_(room_for(given, laws_.size(), method, cell)) {
   fill(given);
   if (method_.volumetric_strain == VolumetricStrain::cell_average) grid_.keep_cells();
+  if (method_.precision == Precision::single) single_ = std::make_unique<SinglePoints>();
   choose_kernel();
   prepare();
   set_time_step(method.time_step);
@@ -108,7 +109,8 @@ void Solver::choose_kernel() {
   constexpr double rounding = 1.0 + 1e-12;
   require(width_ <= widest(basis_) * rounding || basis_ == Basis::linear, "half_length",
           0.5 * width_ * grid_.cell(), "at most 1.5 cells");
-  kernel_ = find_kernel(instruction_set_, method_.scheme, basis_);
+  kernel_ = find_kernel<double>(instruction_set_, method_.scheme, basis_);
+  single_kernel_ = find_kernel<float>(instruction_set_, method_.scheme, basis_);
   sorted_ = nodes_ready_ = false;
 }
 
@@ -138,11 +140,39 @@ bool Solver::advance_to(double time, std::int64_t most) {
   return true;
 }
 
+/// Calls act(kernel, view) for the precision in which the points are stepped.
+template <class Act>
+void Solver::with_kernel(Act act) {
+  if (single_) {
+    act(single_kernel_, view_of(single_->view()));
+  } else {
+    act(kernel_, view_of(points_.view()));
+  }
+}
+
+template <class Real>
+View<Real> Solver::view_of(const PointsView<Real>& points) {
+  return {points,
+          grid_.view(),
+          layout_.blocks.data(),
+          layout_.slabs.data(),
+          static_cast<int>(layout_.slabs.size()),
+          layout_.shares.data(),
+          laws_.data(),
+          half_length_,
+          method_.domain_update,
+          method_.volume_update,
+          team_.get(),
+          method_.ledger ? ledger_rows_.data() : nullptr,
+          &seconds_};
+}
+
 void Solver::prepare() {
   if (!sorted_) {
+    Stopwatch watch(&seconds_);
     const int nodes = method_.shape == ShapeKind::cpgimp ? reach(Basis::gimp_wide) : reach(basis_);
     try {
-      layout_ = arrange(points_, grid_, half_length_, nodes, static_cast<int>(laws_.size()),
+      layout_ = arrange(points(), grid_, half_length_, nodes, static_cast<int>(laws_.size()),
                         method_.threads);
     } catch (const std::invalid_argument& scattered) {
       if (steps_ == 0) throw;
@@ -154,11 +184,16 @@ void Solver::prepare() {
     travel_ = 0.0;
     steps_since_sort_ = 0;
     sorted_ = true;
-    nodes_ready_ = false;
+    nodes_ready_ = single_loaded_ = false;
+    watch.lap(&Seconds::sort);
+  }
+  if (single_ && !single_loaded_) {
+    single_->load(points(), grid_.view());
+    single_loaded_ = true;
   }
   if (!nodes_ready_) {
     grid_.clear();
-    kernel_.prepare(view());
+    with_kernel([](const auto& kernel, const auto& view) { kernel.prepare(view); });
     nodes_ready_ = true;
   }
 }
@@ -173,10 +208,11 @@ void Solver::step(double dt, double whole) {
     fail("the step of " + text(dt) + " s is too long for the velocity blend", -1);
   const double factor = gravity_.factor(time_ + dt);
   const bool courant = method_.time_step.kind == TimeStep::Kind::courant;
-  kernel_.step(view(),
-               {dt, share, gravity_.x * factor, gravity_.y * factor, gravity_.x, gravity_.y,
-                damping_.local, courant},
-               reports_.data());
+  const StepInput input{dt,         share,      gravity_.x * factor, gravity_.y * factor,
+                        gravity_.x, gravity_.y, damping_.local,      courant};
+  with_kernel(
+      [&](const auto& kernel, const auto& view) { kernel.step(view, input, reports_.data()); });
+  single_ahead_ = single_ != nullptr;
 
   Report all;
   for (const Report& report : reports_) {
@@ -209,10 +245,11 @@ void Solver::fail(const std::string& what, std::int64_t point) {
 
 /// A point was refused its move: says which, and what is likely to have happened.
 void Solver::fail_at(int lost, double dt) {
-  const double x = points_.position[0][lost], y = points_.position[1][lost];
-  const double speed = std::sqrt(squared_speed(lost));
-  bool finite = std::isfinite(points_.volume[0][lost]);
-  for (int c = 0; c < 4; ++c) finite = finite && std::isfinite(points_.stress[c][lost]);
+  const Points& p = points();
+  const double x = p.position[0][lost], y = p.position[1][lost];
+  const double speed = std::sqrt(squared_speed(p, lost));
+  bool finite = std::isfinite(p.volume[0][lost]);
+  for (int c = 0; c < 4; ++c) finite = finite && std::isfinite(p.stress[c][lost]);
   std::string cause = "an inverted domain, or points too far apart to share nodes";
   if (speed * dt > kFarthestStep * cell()) {
     cause = "its speed of " + text(speed) + " m/s";
@@ -233,11 +270,11 @@ void Solver::follow_width(double width) {
   width_ = width;
   if (width_ > widest(Basis::gimp_wide)) {
     const auto wider = [&](int a, int b) {
-      const Field& l = points_.half_length;
+      const Field<double>& l = points().half_length;
       return std::max(l[0][a], l[1][a]) < std::max(l[0][b], l[1][b]);
     };
     int point = 0;
-    for (int k = 1; k < points_.size; ++k)
+    for (int k = 1; k < size(); ++k)
       if (wider(point, k)) point = k;
     fail("the domain of point " + std::to_string(points_.number[point]) + " is " + text(width_) +
              " cells wide, of 3 allowed; likely cause: shear or extension that domain_update "
@@ -254,7 +291,8 @@ void Solver::damp_at_peak() {
     last_kinetic_ = kinetic;
     return;
   }
-  points_.velocity.fill(0.0);
+  points().velocity.fill(0.0);
+  single_loaded_ = false;
   ledger_.damping += kinetic;
   last_kinetic_ = 0.0;
   nodes_ready_ = speeds_known_ = false;
@@ -312,14 +350,17 @@ void Solver::reset_clock() {
   time_ = time_carry_ = 0.0;
   steps_ = 0;
   ledger_ = {};
-  points_.plastic_strain.fill(0.0);
+  points().plastic_strain.fill(0.0);
+  single_loaded_ = false;
 }
 
 double Solver::time_step() {
   if (method_.time_step.kind == TimeStep::Kind::fixed) return method_.time_step.value;
   prepare();
   if (!speeds_known_) {
-    kernel_.measure_speeds(view(), reports_.data());
+    with_kernel([&](const auto& kernel, const auto& view) {
+      kernel.measure_speeds(view, reports_.data());
+    });
     gather_speeds();
   }
   const double wave = std::sqrt(speeds_.wave), point = std::sqrt(speeds_.point);
@@ -342,17 +383,19 @@ void Solver::gather_speeds() {
 }
 
 int Solver::fastest_point() const {
+  const Points& p = points();
   int fastest = 0;
-  for (int k = 1; k < points_.size; ++k)
-    if (squared_speed(k) > squared_speed(fastest)) fastest = k;
-  return points_.number[fastest];
+  for (int k = 1; k < p.size; ++k)
+    if (squared_speed(p, k) > squared_speed(p, fastest)) fastest = k;
+  return p.number[fastest];
 }
 
 double Solver::stable_time_step_of(const std::vector<Material>& materials) const {
+  const Points& p = points();
   double fastest = 0.0;
-  for (int k = 0; k < points_.size; ++k)
-    fastest = std::max(fastest, materials[points_.material[k]].wave_modulus() *
-                                    points_.volume[0][k] / points_.mass[0][k]);
+  for (int k = 0; k < p.size; ++k)
+    fastest =
+        std::max(fastest, materials[p.material[k]].wave_modulus() * p.volume[0][k] / p.mass[0][k]);
   return kCourantLimit * grid_.cell() / std::sqrt(fastest);
 }
 
@@ -371,22 +414,20 @@ void Solver::check_alpha(double dt) const {
 }
 
 std::int64_t Solver::bytes() const {
-  return points_.bytes() + grid_.bytes() + layout_.blocks.capacity() * sizeof(Block);
+  return points_.bytes() + (single_ ? single_->bytes() : 0) + grid_.bytes() +
+         layout_.blocks.capacity() * sizeof(Block);
 }
 
-View Solver::view() {
-  return {points_.view(),
-          grid_.view(),
-          layout_.blocks.data(),
-          layout_.slabs.data(),
-          static_cast<int>(layout_.slabs.size()),
-          layout_.shares.data(),
-          laws_.data(),
-          half_length_,
-          method_.domain_update,
-          method_.volume_update,
-          team_.get(),
-          method_.ledger ? ledger_rows_.data() : nullptr};
+/// The points as they are now.
+const Points& Solver::points() const {
+  if (single_ahead_) single_->store(points_);
+  single_ahead_ = false;
+  return points_;
+}
+
+Points& Solver::points() {
+  std::as_const(*this).points();
+  return points_;
 }
 
 }  // namespace gimpslope

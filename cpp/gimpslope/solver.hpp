@@ -81,11 +81,17 @@ class Solver {
   double stable_time_step() const { return stable_time_step_of(materials_); }  // at present, s
   double alpha() { return alpha_of(time_step()); }  // share of PIC in the next step
   std::int64_t bytes() const;
+  const Seconds& seconds() const { return seconds_; }
 
  private:
   void fill(const InitialPoints& given);
   void choose_kernel();
-  View view();
+  template <class Act>
+  void with_kernel(Act act);
+  template <class Real>
+  View<Real> view_of(const PointsView<Real>& points);
+  Points& points();
+  const Points& points() const;
   void prepare();
   void step(double dt, double whole);
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
@@ -97,7 +103,6 @@ class Solver {
   double stable_time_step_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
   void check_alpha(double dt) const;
-  double squared_speed(int k) const;
   double kinetic_energy() const;
   void gather_speeds();
   int fastest_point() const;
@@ -108,15 +113,20 @@ class Solver {
   std::vector<Material> materials_;
   std::vector<Law> laws_;
   Grid grid_;
-  Points points_;
+  mutable Points points_;
+  std::unique_ptr<SinglePoints> single_;  // where the points are stepped in single precision
+  bool single_loaded_ = false;            // it holds the state of the points,
+  mutable bool single_ahead_ = false;     // or a later one
   Layout layout_;
   Basis basis_ = Basis::linear;
-  Kernel kernel_{};
+  Kernel<double> kernel_{};
+  Kernel<float> single_kernel_{};
   Gravity gravity_;
   Damping damping_;
   std::vector<Report> reports_;      // of each slab
   std::vector<Ledger> ledger_rows_;  // of each row of nodes, in one step
   Ledger ledger_;
+  Seconds seconds_;
   Speeds speeds_;  // the largest of all points
   bool speeds_known_ = false;
   double half_length_ = 0.0;  // of all points where they are alike, otherwise their mean, m

@@ -1,18 +1,14 @@
 // Threads that take the loops of a step together.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <thread>
-#include <vector>
-
-#include "buffer.hpp"
+#include <memory>
 
 namespace gimpslope {
 
+/// Whether this build has threads; without them a team has the size 1.
+bool has_threads();
+
 /// A fixed number of threads, this one included, that run a job and meet at barriers in between.
-/// They spin for as long as a barrier of a step usually takes and then sleep, so that a busy
-/// machine is not kept from its work.
 class Team {
  public:
   explicit Team(int size);
@@ -33,23 +29,10 @@ class Team {
   void barrier();
 
  private:
-  struct alignas(kCacheLine) Queue {
-    std::atomic<int> next{0};
-  };
-
-  void work(int thread);
-  void leave();
+  struct Shared;  // by the threads: team_threads.cpp, or team_alone.cpp in a build without them
 
   int size_;
-  int spins_;
-  std::vector<std::thread> threads_;
-  void (*job_)(void*, int) = nullptr;
-  void* context_ = nullptr;
-  bool leaving_ = false;
-  std::atomic<std::uint32_t> jobs_{0};   // started so far
-  std::atomic<std::uint32_t> meets_{0};  // barriers passed so far
-  std::atomic<int> arrived_{0};
-  std::vector<Queue> queues_;
+  std::unique_ptr<Shared> shared_;
 };
 
 }  // namespace gimpslope

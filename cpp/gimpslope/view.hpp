@@ -8,6 +8,7 @@
 #include "ledger.hpp"
 #include "material/material.hpp"
 #include "method.hpp"
+#include "stopwatch.hpp"
 #include "wall.hpp"
 
 namespace gimpslope {
@@ -28,18 +29,24 @@ struct Slab {
   std::int32_t first_row, end_row;
 };
 
-/// One value a point and component, in storage order. Half-lengths and their reference, the rows of
+/// One value a point and component, in storage order. In single precision the places are counted
+/// from the node `home` of each point, which is near, so that they do not lose digits to their
+/// distance from the origin. Half-lengths and their reference, the rows of
 /// the deformation gradient, and body forces (a unit of mass) are null where there is no need of
 /// them.
+template <class Real>
 struct PointsView {
-  double *x, *y, *vx, *vy;
-  double *stress_xx, *stress_yy, *stress_zz, *stress_xy;
-  double *volume, *plastic_strain;
-  const double* mass;
-  double* half_length[2];
-  const double* domain_reference[2];
-  double* deformation[4];
-  const double* body_force[2];
+  static constexpr bool relative = sizeof(Real) < sizeof(double);
+
+  Real *x, *y, *vx, *vy;
+  Real *stress_xx, *stress_yy, *stress_zz, *stress_xy;
+  Real *volume, *plastic_strain;
+  const Real* mass;
+  Real* half_length[2];
+  const Real* domain_reference[2];
+  Real* deformation[4];
+  const Real* body_force[2];
+  const std::int32_t* home;  // null where places are absolute
 };
 
 /// Active nodes of a row: [begin, end).
@@ -65,8 +72,11 @@ struct GridView {
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
 };
 
+/// What a step works on. The points are kept in double or single precision; the grid, and all
+/// that is computed on the way, is in double.
+template <class Real>
 struct View {
-  PointsView points;
+  PointsView<Real> points;
   GridView grid;
   const Block* blocks;
   const Slab* slabs;
@@ -78,6 +88,7 @@ struct View {
   VolumeUpdate volume_update;
   Team* team;
   Ledger* ledger;  // of each row of nodes; null where none is kept
+  Seconds* seconds;
 };
 
 struct StepInput {

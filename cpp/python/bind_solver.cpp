@@ -31,9 +31,9 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
                               const std::string& shape, const std::string& domain_update,
                               const std::string& volume_update,
                               const std::string& volumetric_strain, const std::string& scheme,
-                              const Choice& blended, const Choice& step, int threads,
-                              bool allow_unstable, bool ledger,
-                              const std::string& instruction_set) {
+                              const Choice& blended, const Choice& step,
+                              const std::string& precision, int threads, bool allow_unstable,
+                              bool ledger, const std::string& instruction_set) {
   Method method;
   method.shape = parse<ShapeKind>(
       "shape", shape,
@@ -51,6 +51,8 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
   method.scheme = parse<SchemeKind>("scheme", scheme, {{"usf", SchemeKind::usf}});
   method.blend = blend_of(blended);
   method.time_step = time_step_of(step);
+  method.precision = parse<Precision>(
+      "precision", precision, {{"double", Precision::double_}, {"single", Precision::single}});
   method.threads = threads;
   method.allow_unstable = allow_unstable;
   method.ledger = ledger;
@@ -142,8 +144,9 @@ void bind_solver(py::module_& m) {
            py::arg("volume_update") = "linear", py::arg("volumetric_strain") = "point",
            py::arg("scheme") = "usf", py::arg("blend") = Choice{"alpha", Blend{}.value},
            py::arg("time_step") = Choice{"courant", TimeStep{}.value},
-           py::arg("threads") = Method{}.threads, py::arg("allow_unstable") = false,
-           py::arg("ledger") = false, py::arg("instruction_set") = "")
+           py::arg("precision") = "double", py::arg("threads") = Method{}.threads,
+           py::arg("allow_unstable") = false, py::arg("ledger") = false,
+           py::arg("instruction_set") = "")
       .def(
           "advance",
           [](Guarded& s, std::int64_t steps) {
@@ -238,5 +241,10 @@ void bind_solver(py::module_& m) {
       .def_property_readonly("time_step", read(&Solver::time_step))
       .def_property_readonly("stable_time_step", read(&Solver::stable_time_step))
       .def_property_readonly("alpha", read(&Solver::alpha))
-      .def_property_readonly("bytes", read(&Solver::bytes));
+      .def_property_readonly("bytes", read(&Solver::bytes))
+      .def_property_readonly("seconds", [](Guarded& s) {
+        const Seconds& spent = s.get().seconds();
+        return py::dict(py::arg("stress") = spent.stress, py::arg("move") = spent.move,
+                        py::arg("nodes") = spent.nodes, py::arg("sort") = spent.sort);
+      });
 }

@@ -12,6 +12,7 @@ Shape = Literal["linear", "ugimp", "cpgimp"]
 Scheme = Literal["usf"]
 DomainUpdate = Literal["jacobian", "stretch", "deformation_diagonal"]
 VolumeUpdate = Literal["linear", "exponential"]
+Precision = Literal["double", "single"]
 VolumetricStrain = Literal["point", "cell_average"]
 
 
@@ -43,6 +44,9 @@ class Method(Record):
         (Hughes 1980), against locking where the volume hardly changes, as in undrained clay. Not
         for large elastic motions: a point that crosses into another cell meets another mean stress.
         The mean is over all materials in the cell
+    precision : in which the points are kept: "double", or "single" for scenes too large for the
+        caches; places then count from a node near each point, and the grid and all that is
+        computed on the way stays in double
     threads : number of threads, >= 1; the result does not depend on it
     allow_unstable : accept a time step above the stable limit
     ledger : keep account of every joule (see `Ledger`); costs speed, changes nothing else
@@ -63,6 +67,7 @@ class Method(Record):
     domain_update: DomainUpdate | None = None
     volume_update: VolumeUpdate = "linear"
     volumetric_strain: VolumetricStrain = "point"
+    precision: Precision = "double"
     threads: int = 1
     allow_unstable: bool = False
     ledger: bool = False
@@ -72,6 +77,7 @@ class Method(Record):
         _check.one_of("scheme", self.scheme, get_args(Scheme))
         _check.one_of("volume_update", self.volume_update, get_args(VolumeUpdate))
         _check.one_of("volumetric_strain", self.volumetric_strain, get_args(VolumetricStrain))
+        _check.one_of("precision", self.precision, get_args(Precision))
         self._store(
             threads=_check.whole("threads", self.threads, 1),
             allow_unstable=_check.flag("allow_unstable", self.allow_unstable),
@@ -104,6 +110,7 @@ class Method(Record):
             "domain_update": self.domain_update or default_update,
             "volume_update": self.volume_update,
             "volumetric_strain": self.volumetric_strain,
+            "precision": self.precision,
             "threads": self.threads,
             "allow_unstable": self.allow_unstable,
             "ledger": self.ledger,

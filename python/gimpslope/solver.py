@@ -339,6 +339,13 @@ class Solver:
         """Memory of points and grid, bytes."""
         return self._core.bytes
 
+    @property
+    def seconds(self) -> dict[str, float]:
+        """Time spent so far in the "stress" and the "move" sweep over the points, in the passes
+        over the "nodes", and in the "sort" of the points, s."""
+        spent: dict[str, float] = self._core.seconds
+        return spent
+
     def __len__(self) -> int:
         return self._core.size
 

@@ -48,6 +48,7 @@ def test_walls_refuse_what_is_no_wall(side, value):
 def test_method_has_the_defaults_of_the_study():
     assert Method().to_core() == {
         "shape": "ugimp",
+        "precision": "double",
         "scheme": "usf",
         "blend": ("alpha", 0.01),
         "time_step": ("courant", 0.4),

@@ -11,9 +11,9 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-template <class Shape, bool kOwnDomain>
+template <class Shape, bool kOwnDomain, class Real>
 struct Usf {
-  static void prepare(const View& view) {
+  static void prepare(const View<Real>& view) {
     together(*view.team, [&](int thread) {
       for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
@@ -25,12 +25,15 @@ struct Usf {
     });
   }
 
-  static void step(const View& view, const StepInput& input, Report* reports) {
+  static void step(const View<Real>& view, const StepInput& input, Report* reports) {
     together(*view.team, [&](int thread) {
+      Stopwatch watch(thread == 0 ? view.seconds : nullptr);
       for_each_row(view, thread, [&](int row) {
         start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
       });
+      watch.lap(&Seconds::nodes);
       update_stresses(view, thread, input, reports);
+      watch.lap(&Seconds::stress);
       for_each_row(view, thread, [&](int row) {
         if (view.ledger != nullptr) {
           finish_nodes<true>(view.grid, row, input, view.ledger + row);
@@ -38,6 +41,7 @@ struct Usf {
           finish_nodes<false>(view.grid, row, input, nullptr);
         }
       });
+      watch.lap(&Seconds::nodes);
       for_each_slab(view, thread, [&](int slab) {
         Report report;
         report.ledger = reports[slab].ledger;
@@ -46,11 +50,12 @@ struct Usf {
         });
         reports[slab] = report;
       });
+      watch.lap(&Seconds::move);
     });
   }
 
  private:
-  static void update_stresses(const View& view, int thread, const StepInput& input,
+  static void update_stresses(const View<Real>& view, int thread, const StepInput& input,
                               Report* reports) {
     const bool averaged = view.grid.cells != nullptr;
     if (averaged) {
@@ -80,7 +85,7 @@ struct Usf {
     }
   }
 
-  static void move_block(const View& view, const StepInput& input, const Block& block,
+  static void move_block(const View<Real>& view, const StepInput& input, const Block& block,
                          Report& report) {
     const int begin = block.begin, n = block.end - block.begin;
     Weights<Shape, Need::values> weights;

@@ -55,9 +55,10 @@ inline double taken_by_walls(const NodeStep& s, double dt, int c) {
 }
 
 /// Gain of kinetic energy of n points whose velocity becomes keep v + change.
-inline double kinetic_gain(const PointsView& p, int begin, int n, double keep,
-                           const double* change_x, const double* change_y) {
-  const double *px = p.vx + begin, *py = p.vy + begin, *mass = p.mass + begin;
+template <class Real>
+double kinetic_gain(const PointsView<Real>& p, int begin, int n, double keep,
+                    const double* change_x, const double* change_y) {
+  const Real *px = p.vx + begin, *py = p.vy + begin, *mass = p.mass + begin;
   double sum = 0.0;
 #pragma omp simd reduction(+ : sum)
   for (int k = 0; k < n; ++k) {
@@ -73,8 +74,9 @@ struct StressBefore {
   double xx[kBlock], yy[kBlock], zz[kBlock], xy[kBlock], volume[kBlock];
 };
 
-inline void remember(const View& view, int begin, int n, StressBefore& before) {
-  const PointsView& p = view.points;
+template <class Real>
+void remember(const View<Real>& view, int begin, int n, StressBefore& before) {
+  const PointsView<Real>& p = view.points;
   for (int k = 0; k < n; ++k) {
     before.xx[k] = p.stress_xx[begin + k];
     before.yy[k] = p.stress_yy[begin + k];
@@ -86,15 +88,15 @@ inline void remember(const View& view, int begin, int n, StressBefore& before) {
 
 /// Plastic work and residues of n points whose stress has turned by the rotation and
 /// taken the strain increments of `s`.
-template <class Strains>
-void add_stress_work(const View& view, int begin, int n, const Elastic& law, const Strains& s,
+template <class Strains, class Real>
+void add_stress_work(const View<Real>& view, int begin, int n, const Elastic& law, const Strains& s,
                      const StressBefore& before, Ledger& sum) {
-  const PointsView& p = view.points;
-  const double* sxx = p.stress_xx + begin;
-  const double* syy = p.stress_yy + begin;
-  const double* szz = p.stress_zz + begin;
-  const double* sxy = p.stress_xy + begin;
-  const double* volume = p.volume + begin;
+  const PointsView<Real>& p = view.points;
+  const Real* sxx = p.stress_xx + begin;
+  const Real* syy = p.stress_yy + begin;
+  const Real* szz = p.stress_zz + begin;
+  const Real* sxy = p.stress_xy + begin;
+  const Real* volume = p.volume + begin;
   const Compliance compliance = compliance_of(law);
   double plastic = 0.0, hypoelastic = 0.0, integration = 0.0;
 #pragma omp simd reduction(+ : plastic, hypoelastic, integration)

@@ -10,16 +10,19 @@ namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 /// The sums of the cell that the place of point k, counted from `begin`, lies in.
-inline double* cell_of(const View& view, int begin, int k) {
+template <class Real>
+double* cell_of(const View<Real>& view, int begin, int k) {
   const GridView& g = view.grid;
-  const int column = static_cast<int>((view.points.x[begin + k] - g.left) / g.cell);
-  const int row = static_cast<int>((view.points.y[begin + k] - g.bottom) / g.cell);
-  return g.cells + 4 * (row * g.stride + column);
+  constexpr bool relative = PointsView<Real>::relative;
+  const double left = relative ? 0.0 : g.left, bottom = relative ? 0.0 : g.bottom;
+  const int column = static_cast<int>((view.points.x[begin + k] - left) / g.cell);
+  const int row = static_cast<int>((view.points.y[begin + k] - bottom) / g.cell);
+  return g.cells + 4 * (row * g.stride + column + (relative ? view.points.home[begin + k] : 0));
 }
 
 /// First of three sweeps: volumes and their rates to the cells.
-template <class Shape, bool kOwnDomain>
-void dilatation_block(const View& view, const Block& block) {
+template <class Shape, bool kOwnDomain, class Real>
+void dilatation_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;
@@ -34,11 +37,11 @@ void dilatation_block(const View& view, const Block& block) {
 }
 
 /// Second: stresses from the averaged strains, and mean stresses to the cells.
-template <class Shape, bool kOwnDomain>
-void averaged_stress_block(const View& view, const StepInput& input, const Block& block,
+template <class Shape, bool kOwnDomain, class Real>
+void averaged_stress_block(const View<Real>& view, const StepInput& input, const Block& block,
                            Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
-  const PointsView& p = view.points;
+  const PointsView<Real>& p = view.points;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
@@ -60,8 +63,8 @@ void averaged_stress_block(const View& view, const StepInput& input, const Block
 }
 
 /// Third: forces of the stresses with their averaged mean.
-template <class Shape, bool kOwnDomain>
-void averaged_force_block(const View& view, const Block& block) {
+template <class Shape, bool kOwnDomain, class Real>
+void averaged_force_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   PointForces forces;

@@ -19,8 +19,8 @@ struct Change {
 };
 
 /// Sum of S update (paper eq. 26).
-template <class Shape>
-void gather_change(const View& view, int n, const Weights<Shape, Need::values>& weights,
+template <class Shape, class Real>
+void gather_change(const View<Real>& view, int n, const Weights<Shape, Need::values>& weights,
                    Change& change) {
   const double* update = view.grid.update;
   const int stride = view.grid.stride;
@@ -54,8 +54,9 @@ inline int first_too_far(int n, double per_cell, const Change& change) {
 
 /// New places, and velocities (1 - alpha) v + change. The points of a block move together or, if
 /// one of them would go too far, not at all.
-inline void move_points(const View& view, int begin, int n, double alpha, const Change& change,
-                        Report& report) {
+template <class Real>
+void move_points(const View<Real>& view, int begin, int n, double alpha, const Change& change,
+                 Report& report) {
   double largest = 0.0, sum = 0.0;  // the sum is NaN if any change is
 #pragma omp simd reduction(max : largest) reduction(+ : sum)
   for (int k = 0; k < n; ++k) {
@@ -71,8 +72,8 @@ inline void move_points(const View& view, int begin, int n, double alpha, const 
     return;
   }
   report.travel = travel > report.travel ? travel : report.travel;
-  const PointsView& p = view.points;
-  double *px = p.x + begin, *py = p.y + begin, *vx = p.vx + begin, *vy = p.vy + begin;
+  const PointsView<Real>& p = view.points;
+  Real *px = p.x + begin, *py = p.y + begin, *vx = p.vx + begin, *vy = p.vy + begin;
   const double keep = 1.0 - alpha;
   if (view.ledger != nullptr)
     report.ledger.transfer -= kinetic_gain(p, begin, n, keep, change.vx, change.vy);
@@ -92,7 +93,8 @@ struct Growth {
   bool known = false;                    // none is NaN
 };
 
-inline Growth growth_of(int n, const double* before, const double* after) {
+template <class Real>
+Growth growth_of(int n, const double* before, const Real* after) {
   double largest = 0.0, narrowest = after[0], widest = 0.0, sum = 0.0;
 #pragma omp simd reduction(max : largest, widest) reduction(min : narrowest) reduction(+ : sum)
   for (int k = 0; k < n; ++k) {
@@ -106,14 +108,15 @@ inline Growth growth_of(int n, const double* before, const double* after) {
 }
 
 /// New domains, how far their edges moved, and the widest one.
-inline void resize_domains(const View& view, int begin, int n, Report& report) {
+template <class Real>
+void resize_domains(const View<Real>& view, int begin, int n, Report& report) {
   const double per_cell = 1.0 / view.grid.cell;
   double before[2][kBlock];
   for (int c = 0; c < 2; ++c)
     for (int k = 0; k < n; ++k) before[c][k] = view.points.half_length[c][begin + k];
   update_domains(view, begin, n);
   for (int c = 0; c < 2; ++c) {
-    const double* after = view.points.half_length[c] + begin;
+    const Real* after = view.points.half_length[c] + begin;
     const Growth growth = growth_of(n, before[c], after);
     const double farthest = (kFarthestStep - report.travel) / per_cell;
     if (!(growth.known && growth.narrowest > 0.0 && growth.largest <= farthest)) {

@@ -9,17 +9,18 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// The nodes of one point, summed in registers for as long as the following points share them.
+/// The nodes of one point, summed in registers for as long as the following points share them. All
+/// is inlined and unrolled on demand, or else the compiler may keep the sums in memory.
 template <class Shape>
 class NodeSums {
  public:
   NodeSums(double* field, std::ptrdiff_t stride) : field_(field), stride_(stride) {}
   NodeSums(const NodeSums&) = delete;
   NodeSums& operator=(const NodeSums&) = delete;
-  ~NodeSums() { store(); }
+  [[gnu::always_inline]] ~NodeSums() { store(); }
 
   /// Makes the nodes from `first` on those that `add` adds to.
-  void move_to(int first) {
+  [[gnu::always_inline]] void move_to(int first) {
     if (first == first_) return;
     store();
     first_ = first;
@@ -29,10 +30,9 @@ class NodeSums {
       for (Quad& node : row) node = Quad{};
   }
 
-  /// Adds point x(i) y(j) to node (i, j). GCC keeps the sums in registers only if told to
-  /// unroll.
+  /// Adds point x(i) y(j) to node (i, j).
   template <class X, class Y>
-  void add(Quad point, X x, Y y) {
+  [[gnu::always_inline]] void add(Quad point, X x, Y y) {
 #pragma GCC unroll 8
     for (int j = 0; j < Shape::nodes; ++j) {
       const Quad row = point * y(j);
@@ -42,7 +42,7 @@ class NodeSums {
   }
 
  private:
-  void store() {
+  [[gnu::always_inline]] void store() {
     if (first_ < 0) return;
     double* row = field_ + 4 * first_;
 #pragma GCC unroll 8
@@ -57,12 +57,12 @@ class NodeSums {
 };
 
 /// Mass and momentum at the nodes (paper eq. 18-19), from weights at the points' present places.
-template <class Shape>
-void scatter_momentum(const View& view, int begin, int n,
+template <class Shape, class Real>
+void scatter_momentum(const View<Real>& view, int begin, int n,
                       const Weights<Shape, Need::values>& weights) {
-  const double* vx = view.points.vx + begin;
-  const double* vy = view.points.vy + begin;
-  const double* mass = view.points.mass + begin;
+  const Real* vx = view.points.vx + begin;
+  const Real* vy = view.points.vy + begin;
+  const Real* mass = view.points.mass + begin;
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
@@ -73,12 +73,12 @@ void scatter_momentum(const View& view, int begin, int n,
 }
 
 /// Body forces at the nodes: sum of S m b (paper eq. 12, the first term).
-template <class Shape>
-void scatter_body_forces(const View& view, int begin, int n,
+template <class Shape, class Real>
+void scatter_body_forces(const View<Real>& view, int begin, int n,
                          const Weights<Shape, Need::gradients>& weights) {
-  const double* bx = view.points.body_force[0] + begin;
-  const double* by = view.points.body_force[1] + begin;
-  const double* mass = view.points.mass + begin;
+  const Real* bx = view.points.body_force[0] + begin;
+  const Real* by = view.points.body_force[1] + begin;
+  const Real* mass = view.points.mass + begin;
   NodeSums<Shape> nodes(view.grid.body, view.grid.stride);
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
@@ -94,8 +94,8 @@ struct PointForces {
 };
 
 /// Internal forces at the nodes (paper eq. 11): -V sigma grad S.
-template <class Shape>
-void scatter_forces(const View& view, int n, const Weights<Shape, Need::gradients>& weights,
+template <class Shape, class Real>
+void scatter_forces(const View<Real>& view, int n, const Weights<Shape, Need::gradients>& weights,
                     const PointForces& forces) {
   NodeSums<Shape> nodes(view.grid.force, view.grid.stride);
   for (int k = 0; k < n; ++k) {

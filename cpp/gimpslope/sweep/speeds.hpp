@@ -7,11 +7,12 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-inline double largest_specific_volume(int n, const double* volume, const double* mass) {
+template <class Real>
+double largest_specific_volume(int n, const Real* volume, const Real* mass) {
   double largest = 0.0;
 #pragma omp simd reduction(max : largest)
   for (int k = 0; k < n; ++k) {
-    const double ratio = volume[k] / mass[k];
+    const double ratio = static_cast<double>(volume[k]) / mass[k];
     largest = ratio > largest ? ratio : largest;
   }
   return largest;
@@ -19,11 +20,12 @@ inline double largest_specific_volume(int n, const double* volume, const double*
 
 /// Squared point and wave speeds, c^2 = (K + 4G/3) V / m, of a block. A block that cannot hold the
 /// largest wave speed is spared its divisions.
-inline void add_speeds(const View& view, const Block& block, Speeds& largest) {
-  const PointsView& p = view.points;
+template <class Real>
+void add_speeds(const View<Real>& view, const Block& block, Speeds& largest) {
+  const PointsView<Real>& p = view.points;
   const int begin = block.begin, n = block.end - block.begin;
-  const double *vx = p.vx + begin, *vy = p.vy + begin;
-  const double *volume = p.volume + begin, *mass = p.mass + begin;
+  const Real *vx = p.vx + begin, *vy = p.vy + begin;
+  const Real *volume = p.volume + begin, *mass = p.mass + begin;
   double point = 0.0, most = 0.0, least = mass[0];
 #pragma omp simd reduction(max : point, most) reduction(min : least)
   for (int k = 0; k < n; ++k) {
@@ -40,7 +42,8 @@ inline void add_speeds(const View& view, const Block& block, Speeds& largest) {
 }
 
 /// The speeds of all points, in the report of each slab.
-inline void measure_speeds(const View& view, Report* reports) {
+template <class Real>
+void measure_speeds(const View<Real>& view, Report* reports) {
   together(*view.team, [&](int thread) {
     for_each_slab(view, thread, [&](int slab) {
       Speeds speeds;

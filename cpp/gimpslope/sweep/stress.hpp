@@ -24,8 +24,8 @@ struct Gradient {
 };
 
 /// Velocity gradient (paper eq. 21-22).
-template <class Shape>
-void gather_gradient(const View& view, int n, const Weights<Shape, Need::gradients>& weights,
+template <class Shape, class Real>
+void gather_gradient(const View<Real>& view, int n, const Weights<Shape, Need::gradients>& weights,
                      Gradient& gradient) {
   const double* velocity = view.grid.velocity;
   const int stride = view.grid.stride;
@@ -48,10 +48,11 @@ void gather_gradient(const View& view, int n, const Weights<Shape, Need::gradien
 }
 
 /// F <- (I + L dt) F.
-inline void update_deformation(const View& view, int begin, int n, const Gradient& l, double dt) {
+template <class Real>
+void update_deformation(const View<Real>& view, int begin, int n, const Gradient& l, double dt) {
   const double factor = dt / view.grid.cell;
-  double* const* f = view.points.deformation;
-  double *xx = f[0] + begin, *xy = f[1] + begin, *yx = f[2] + begin, *yy = f[3] + begin;
+  Real* const* f = view.points.deformation;
+  Real *xx = f[0] + begin, *xy = f[1] + begin, *yx = f[2] + begin, *yy = f[3] + begin;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     const double fxx = xx[k], fxy = xy[k], fyx = yx[k], fyy = yy[k];
@@ -63,10 +64,11 @@ inline void update_deformation(const View& view, int begin, int n, const Gradien
 }
 
 /// Strain increments, volumes, and the angle of the rotation.
-inline void update_volume(const View& view, int begin, int n, double dt, const Gradient& l,
-                          Strains& s) {
+template <class Real>
+void update_volume(const View<Real>& view, int begin, int n, double dt, const Gradient& l,
+                   Strains& s) {
   const double factor = dt / view.grid.cell;
-  double* volume = view.points.volume + begin;
+  Real* volume = view.points.volume + begin;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     s.xx[k] = factor * l.vx_x[k];
@@ -83,14 +85,15 @@ inline void update_volume(const View& view, int begin, int n, double dt, const G
 }
 
 /// Stress after the step: turned by the exact rotation, then the law (paper eq. 24-25).
-template <class Constants>
-void update_stress(const View& view, int begin, int n, const Constants& law, const Strains& s) {
-  const PointsView& p = view.points;
-  double* xx = p.stress_xx + begin;
-  double* yy = p.stress_yy + begin;
-  double* zz = p.stress_zz + begin;
-  double* xy = p.stress_xy + begin;
-  double* plastic_strain = p.plastic_strain + begin;
+template <class Constants, class Real>
+void update_stress(const View<Real>& view, int begin, int n, const Constants& law,
+                   const Strains& s) {
+  const PointsView<Real>& p = view.points;
+  Real* xx = p.stress_xx + begin;
+  Real* yy = p.stress_yy + begin;
+  Real* zz = p.stress_zz + begin;
+  Real* xy = p.stress_xy + begin;
+  Real* plastic_strain = p.plastic_strain + begin;
   const Constants constants = law;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
@@ -105,10 +108,11 @@ void update_stress(const View& view, int begin, int n, const Constants& law, con
   }
 }
 
-inline void point_forces(const View& view, int begin, int n, PointForces& forces) {
-  const PointsView& p = view.points;
-  const double *volume = p.volume + begin, *xx = p.stress_xx + begin;
-  const double *yy = p.stress_yy + begin, *xy = p.stress_xy + begin;
+template <class Real>
+void point_forces(const View<Real>& view, int begin, int n, PointForces& forces) {
+  const PointsView<Real>& p = view.points;
+  const Real *volume = p.volume + begin, *xx = p.stress_xx + begin;
+  const Real *yy = p.stress_yy + begin, *xy = p.stress_xy + begin;
   const double per_cell = -1.0 / view.grid.cell;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
@@ -120,8 +124,9 @@ inline void point_forces(const View& view, int begin, int n, PointForces& forces
 }
 
 /// Volume, deformation and stress of a block after its strain increments.
-inline void deform_block(const View& view, const StepInput& input, const Block& block,
-                         const Gradient& gradient, Ledger& ledger) {
+template <class Real>
+void deform_block(const View<Real>& view, const StepInput& input, const Block& block,
+                  const Gradient& gradient, Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
   const Law& law = view.laws[block.material];
   Strains strains;
@@ -136,8 +141,9 @@ inline void deform_block(const View& view, const StepInput& input, const Block& 
     add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);
 }
 
-template <class Shape, bool kOwnDomain>
-void stress_block(const View& view, const StepInput& input, const Block& block, Ledger& ledger) {
+template <class Shape, bool kOwnDomain, class Real>
+void stress_block(const View<Real>& view, const StepInput& input, const Block& block,
+                  Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;

@@ -47,15 +47,17 @@ struct Weights<Shape, Need::gradients> {
 
 /// Shape functions of the n points from `begin` on. With kOwnDomain each point has its own
 /// half-lengths, otherwise all share one.
-template <class Shape, bool kOwnDomain, Need kNeed>
-void evaluate(const View& view, int begin, int n, Weights<Shape, kNeed>& out) {
+template <class Shape, bool kOwnDomain, Need kNeed, class Real>
+void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& out) {
   const GridView& grid = view.grid;
-  const double* px = view.points.x + begin;
-  const double* py = view.points.y + begin;
-  const double* lx = kOwnDomain ? view.points.half_length[0] + begin : nullptr;
-  const double* ly = kOwnDomain ? view.points.half_length[1] + begin : nullptr;
+  const Real* px = view.points.x + begin;
+  const Real* py = view.points.y + begin;
+  const Real* lx = kOwnDomain ? view.points.half_length[0] + begin : nullptr;
+  const Real* ly = kOwnDomain ? view.points.half_length[1] + begin : nullptr;
   const double per_cell = 1.0 / grid.cell;
-  const double left = grid.left, bottom = grid.bottom;
+  const std::int32_t* home = view.points.home + begin;
+  const double left = PointsView<Real>::relative ? 0.0 : grid.left;
+  const double bottom = PointsView<Real>::relative ? 0.0 : grid.bottom;
   const double stride = grid.stride;
   const double common = Shape::extended ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::extended ? 1.0 / common : 0.0;
@@ -73,6 +75,7 @@ void evaluate(const View& view, int begin, int n, Weights<Shape, kNeed>& out) {
     const double y = (py[k] - bottom) * per_cell - 0.5 * width_y;
     const double column = static_cast<int>(x), row = static_cast<int>(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
+    if constexpr (PointsView<Real>::relative) out.first[k] += home[k];
 
     double w[Shape::nodes], d[Shape::nodes];
     Shape::evaluate(x - column, width_x, inverse_x, w, d);

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from ..materials import Cone, DruckerPrager
-from ..method import Method, VolumetricStrain
+from ..method import Method, Precision, VolumetricStrain
 from ..outline import Outline
 from ..scene import Scene
 from ..walls import Coulomb, Fixed, Roller, Walls
@@ -77,6 +77,7 @@ def method(
     *,
     courant: float | None = None,
     time_step: float | None = None,
+    precision: Precision = "double",
     threads: int = 1,
     ledger: bool = True,
     volumetric_strain: VolumetricStrain = "point",
@@ -86,6 +87,7 @@ def method(
         viscosity=_reading(reading).viscosity,
         courant=courant,
         time_step=time_step,
+        precision=precision,
         threads=threads,
         ledger=ledger,
         volumetric_strain=volumetric_strain,
