@@ -7,7 +7,7 @@
 
 namespace gimpslope {
 
-namespace generic {
+inline namespace generic {
 template <class Real>
 Kernel<Real> kernel(SchemeKind scheme, Basis basis);
 }
@@ -27,7 +27,9 @@ std::vector<InstructionSet> available_instruction_sets() {
 #ifdef GIMPSLOPE_X86
   __builtin_cpu_init();
   const bool v3 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2");
+                  __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
+                  __builtin_cpu_supports("f16c") && __builtin_cpu_supports("lzcnt") &&
+                  __builtin_cpu_supports("movbe");
   if (v3) sets.push_back(InstructionSet::x86_64_v3);
   const bool v4 = v3 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                   __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&

@@ -9,7 +9,7 @@
 
 namespace gimpslope {
 
-namespace generic {
+inline namespace generic {
 bool plain_step(const PlainView& view, double dt, double alpha);
 }
 #ifdef GIMPSLOPE_X86

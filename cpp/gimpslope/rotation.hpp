@@ -38,23 +38,21 @@ inline void tiny_rotation(double angle, double& cosine, double& sine) {
   sine = angle * (1.0 + a * (-1.0 / 6 + a * (1.0 / 120 + a * (-1.0 / 5040))));
 }
 
-/// Cosine and sine of n angles. A stable step turns a point by little: a block that holds a larger
-/// angle takes the longer series, or the library's functions.
+/// Cosine and sine of n angles. A stable step turns a point by little: only a block that holds a
+/// larger angle takes the longer series, or the library's functions.
 inline void rotation(int n, const double* angle, double* cosine, double* sine) {
   double largest = 0.0;
 #pragma omp simd reduction(max : largest)
   for (int k = 0; k < n; ++k) {
+    tiny_rotation(angle[k], cosine[k], sine[k]);
     const double size = std::fabs(angle[k]);
     largest = size > largest ? size : largest;
   }
-  if (largest <= kTinyAngle) {
-#pragma omp simd
-    for (int k = 0; k < n; ++k) tiny_rotation(angle[k], cosine[k], sine[k]);
-  } else if (largest <= kSmallAngle) {
-#pragma omp simd
-    for (int k = 0; k < n; ++k) small_rotation(angle[k], cosine[k], sine[k]);
-  } else {
-    for (int k = 0; k < n; ++k) {
+  if (largest <= kTinyAngle) return;
+  for (int k = 0; k < n; ++k) {
+    if (largest <= kSmallAngle) {
+      small_rotation(angle[k], cosine[k], sine[k]);
+    } else {
       cosine[k] = std::cos(angle[k]);
       sine[k] = std::sin(angle[k]);
     }

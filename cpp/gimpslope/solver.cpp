@@ -15,7 +15,7 @@
 namespace gimpslope {
 namespace {
 
-constexpr int kStepsBetweenSorts = 50;
+constexpr int kStepsBetweenSorts = 100;
 constexpr double kFastest = 1000.0;  // speed of a point, in wave speeds
 
 /// The points share one half-length unless they were given different ones, follow the deformation,

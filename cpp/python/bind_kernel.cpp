@@ -5,6 +5,7 @@
 #include "bind.hpp"
 #include "gimpslope/instruction_set.hpp"
 #include "gimpslope/probe.hpp"
+#include "gimpslope/team.hpp"
 
 using namespace gimpslope;
 
@@ -58,6 +59,7 @@ py::tuple deform_stress(const Material& material, const Doubles& stress,
 
 void bind_kernel(py::module_& m) {
   m.attr("courant_limit") = kCourantLimit;
+  m.attr("has_threads") = has_threads();
   m.def("instruction_sets", [] {
     std::vector<std::string> names;
     for (const InstructionSet set : available_instruction_sets()) names.emplace_back(name(set));

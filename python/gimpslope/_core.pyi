@@ -121,6 +121,7 @@ class Plain:
     def time(self) -> float: ...
 
 courant_limit: float
+has_threads: bool
 
 def instruction_sets() -> list[str]: ...
 def shape_functions(

@@ -133,3 +133,8 @@ def update_stress(
 def instruction_sets() -> list[str]:
     """Instruction sets that this build holds and this processor runs, the fastest last."""
     return _core.instruction_sets()
+
+
+def has_threads() -> bool:
+    """Whether this build has threads; without them `Method(threads=...)` must be 1."""
+    return _core.has_threads

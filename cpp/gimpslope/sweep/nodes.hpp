@@ -44,13 +44,11 @@ inline Pair velocity_of(const double* momentum) {
   return inverse * pair(momentum + 2);
 }
 
-/// Velocity of the nodes of a row within the walls; clears the forces, and begins the row's ledger
-/// where one is kept.
+/// Velocity of the nodes of a row within the walls; begins the row's ledger where one is kept.
 inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
   if (ledger != nullptr) *ledger = {};
   const auto set = [&](int node, const Pair& v) {
     quad(g.velocity + 4 * node) = Quad{v[0], v[0], v[1], v[1]};
-    quad(g.force + 4 * node) = Quad{};
     if (g.cells != nullptr) quad(g.cells + 4 * node) = Quad{};
   };
   for_each_node(
@@ -97,8 +95,8 @@ inline NodeStep forces_on(const GridView& g, int node, const StepInput& step) {
 }
 
 /// Momentum of the nodes of a row (paper eq. 13) with the walls' reactions, and what a point takes
-/// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass and momentum, and
-/// adds to the row's ledger where one is kept.
+/// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass, momentum and forces,
+/// and adds to the row's ledger where one is kept.
 template <bool kLedger>
 void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
   const auto advance = [&](NodeStep& s) {
@@ -108,6 +106,7 @@ void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* led
     const Pair moved = step.dt * s.after, gained = s.after - (1.0 - step.alpha) * s.raw;
     quad(g.update + 4 * node) = Quad{moved[0], moved[1], gained[0], gained[1]};
     quad(g.momentum + 4 * node) = Quad{};
+    quad(g.force + 4 * node) = Quad{};
     if (g.body != nullptr) quad(g.body + 4 * node) = Quad{};
   };
   for_each_node(

@@ -53,7 +53,7 @@ class NodeSums {
 
   double* field_;
   std::ptrdiff_t stride_, first_ = -1;
-  Quad sum_[Shape::nodes][Shape::nodes];
+  Quad sum_[Shape::nodes][Shape::nodes]{};
 };
 
 /// Mass and momentum at the nodes (paper eq. 18-19), from weights at the points' present places.
