@@ -39,6 +39,20 @@ void sort_by(std::vector<std::int32_t>& order, int keys, Key key) {
   order.swap(sorted);
 }
 
+/// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a single
+/// one: 0, 1 or 2 for each point.
+template <class Same>
+std::vector<std::uint8_t> parts_of_cells(const std::vector<std::int32_t>& order, Same same) {
+  std::vector<std::uint8_t> part(order.size());
+  for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
+    for (end = begin + 1; end < order.size() && same(order[begin], order[end]);) ++end;
+    const std::size_t fours = begin + (end - begin) / 4 * 4, pairs = begin + (end - begin) / 2 * 2;
+    for (std::size_t k = begin; k < end; ++k)
+      part[order[k]] = k < fours ? 0 : (k < pairs ? 1 : 2);
+  }
+  return part;
+}
+
 /// Makes the nodes active that points in these cells can reach before the next sort.
 void activate_reached(const std::vector<Cell>& cells, Cell low, Cell high, int reach, Grid& grid) {
   const NodeRange none{high.column - low.column + 1, -1};
@@ -88,8 +102,16 @@ Layout arrange(Points& points, Grid& grid, double half_length, int reach, int ma
   };
   sort_by(order, high.column - low.column + 1,
           [&](std::int32_t point) { return cells[point].column - low.column; });
-  sort_by(order, (high.row - low.row + 1) * materials,
-          [&](std::int32_t point) { return row(point) * materials + points.material[point]; });
+  const auto row_and_material = [&](std::int32_t point) {
+    return row(point) * materials + points.material[point];
+  };
+  const int keys = (high.row - low.row + 1) * materials;
+  sort_by(order, keys, row_and_material);
+  const auto part = parts_of_cells(order, [&](std::int32_t a, std::int32_t b) {
+    return cells[a].column == cells[b].column && row_and_material(a) == row_and_material(b);
+  });
+  sort_by(order, 3 * keys,
+          [&](std::int32_t point) { return 3 * row_and_material(point) + part[point]; });
 
   // Blocks begin on cache lines where they can, which full ones of kBlock points do.
   constexpr int kLine = kCacheLine / sizeof(double);

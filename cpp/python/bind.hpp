@@ -16,6 +16,7 @@ namespace py = pybind11;
 
 void bind_material(py::module_& m);
 void bind_kernel(py::module_& m);
+void bind_machine(py::module_& m);
 void bind_plain(py::module_& m);
 void bind_solver(py::module_& m);
 

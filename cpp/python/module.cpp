@@ -6,4 +6,5 @@ PYBIND11_MODULE(_core, m) {
   bind_kernel(m);
   bind_solver(m);
   bind_plain(m);
+  bind_machine(m);
 }
