@@ -123,6 +123,7 @@ class Plain:
 courant_limit: float
 
 def instruction_sets() -> list[str]: ...
+def shapes() -> list[str]: ...
 def shape_functions(
     shape: str,
     position: ArrayLike,
