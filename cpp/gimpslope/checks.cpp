@@ -4,6 +4,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "shape/traits.hpp"
 
 namespace gimpslope {
 
@@ -17,12 +18,12 @@ void check_values(std::span<const double> values, std::size_t count, bool positi
   }
 }
 
-void check(const InitialPoints& p, std::size_t materials, ShapeKind shape) {
+void check(const InitialPoints& p, std::size_t materials, const std::string& shape) {
   const std::size_t n = p.position.size() / 2;
   require(n > 0 && n < (1u << 29), "position", std::to_string(n) + " points", "1 to 2^29 points");
   check_values(p.position, 2 * n, false, "position");
   check_values(p.velocity, 2 * n, false, "velocity");
-  check_values(p.half_length, 2 * n, shape != ShapeKind::linear, "half_length");
+  check_values(p.half_length, 2 * n, has_domains(shape), "half_length");
   check_values(p.mass, n, true, "mass");
   check_values(p.volume, n, true, "volume");
   require(p.material.size() == n, "material", std::to_string(p.material.size()) + " values",
@@ -33,8 +34,9 @@ void check(const InitialPoints& p, std::size_t materials, ShapeKind shape) {
 }
 
 void check(const Method& m) {
+  find_shape(m.shape);  // refuses unknown names
   const bool follows = m.domain_update != DomainUpdate::none;
-  require((m.shape == ShapeKind::cpgimp) == follows, "domain_update", follows ? "given" : "none",
+  require((m.shape == "cpgimp") == follows, "domain_update", follows ? "given" : "none",
           "jacobian, stretch or deformation_diagonal with shape cpgimp, none with any other");
   const double b = m.blend.value;
   switch (m.blend.kind) {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "method.hpp"
 
@@ -20,7 +21,7 @@ struct InitialPoints {
 void check_values(std::span<const double> values, std::size_t count, bool positive,
                   const char* parameter);
 
-void check(const InitialPoints& points, std::size_t materials, ShapeKind shape);
+void check(const InitialPoints& points, std::size_t materials, const std::string& shape);
 void check(const Method& method);
 
 }  // namespace gimpslope

@@ -5,6 +5,7 @@
 
 #include "checks.hpp"
 #include "error.hpp"
+#include "shape/traits.hpp"
 #include "solver.hpp"
 
 namespace gimpslope {
@@ -85,13 +86,13 @@ FieldView Solver::field(const std::string& name) {
     return all(p.body_force);
   }
   if (name == "half_length" && !p.half_length.empty()) return all(p.half_length);
-  if (name == "half_length" && method_.shape != ShapeKind::linear) return {&half_length_, 0, 0, 2};
+  if (name == "half_length" && has_domains(method_.shape)) return {&half_length_, 0, 0, 2};
   if (name == "deformation_gradient" && !p.deformation.empty()) return all(p.deformation);
-  require(false, "field", name,
-          "one of position, velocity, stress, volume, mass, plastic_strain, body_force, "
-          "half_length (not with shape linear), deformation_gradient (with cpgimp stretch or "
-          "deformation_diagonal)");
-  return {};
+  refuse("field", name,
+         "one of position, velocity, stress, volume, mass, plastic_strain, body_force, "
+         "half_length (with ugimp and cpgimp), deformation_gradient (with cpgimp stretch or "
+         "deformation_diagonal) with shape " +
+             method_.shape);
 }
 
 /// Body forces take room, in points and nodes, from when one is first set or looked at.

@@ -2,8 +2,6 @@
 
 #include "error.hpp"
 #include "kernel.hpp"
-#include "shape/gimp.hpp"
-#include "shape/linear.hpp"
 
 namespace gimpslope {
 
@@ -59,28 +57,6 @@ InstructionSet parse_instruction_set(const std::string& text) {
   }
   require(false, "instruction_set", text, (allowed + " on this processor").c_str());
   return InstructionSet::generic;
-}
-
-int reach(Basis basis) {
-  switch (basis) {
-    case Basis::linear:
-      return Linear::nodes;
-    case Basis::gimp_wide:
-      return WideGimp::nodes;
-    default:
-      return Gimp::nodes;
-  }
-}
-
-double widest(Basis basis) {
-  switch (basis) {
-    case Basis::linear:
-      return Linear::widest;
-    case Basis::gimp_wide:
-      return WideGimp::widest;
-    default:
-      return Gimp::widest;
-  }
 }
 
 template <class Real>

@@ -3,30 +3,33 @@
 #include "kernel.hpp"
 
 #include "scheme/usf.hpp"
-#include "shape/gimp.hpp"
-#include "shape/linear.hpp"
+#include "shape/list.hpp"
 #include "sweep/speeds.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 namespace {
 
-template <template <class, bool, class> class Scheme, class Real>
-Kernel<Real> with_basis(Basis basis) {
-  const auto of = []<class Combination>(Combination) -> Kernel<Real> {
-    return {&Combination::prepare, &Combination::step, &measure_speeds<Real>};
-  };
-  switch (basis) {
-    case Basis::linear:
-      return of(Scheme<Linear, false, Real>{});
-    case Basis::gimp_common:
-      return of(Scheme<Gimp, false, Real>{});
-    case Basis::gimp_own:
-      return of(Scheme<Gimp, true, Real>{});
-    case Basis::gimp_wide:
-      break;
+template <class Real, class Combination>
+Kernel<Real> of() {
+  return {&Combination::prepare, &Combination::step, &measure_speeds<Real>};
+}
+
+/// Points share domains up to a certain width, have their own beyond it, or have none.
+template <template <class, bool, class> class Scheme, class Real, class Shape>
+Kernel<Real> with_domain(bool own) {
+  constexpr bool extended = Shape::widest > 0.0;
+  if constexpr (extended && Shape::widest <= kWidestCommon) {
+    return own ? of<Real, Scheme<Shape, true, Real>>() : of<Real, Scheme<Shape, false, Real>>();
+  } else {
+    return of<Real, Scheme<Shape, extended, Real>>();
   }
-  return of(Scheme<WideGimp, true, Real>{});
+}
+
+template <template <class, bool, class> class Scheme, class Real, class... Shape>
+Kernel<Real> with_basis(Basis basis, List<Shape...>) {
+  constexpr Kernel<Real> (*of_shape[])(bool own) = {&with_domain<Scheme, Real, Shape>...};
+  return of_shape[basis.shape](basis.own_domain);
 }
 
 }  // namespace
@@ -38,7 +41,7 @@ Kernel<Real> kernel(SchemeKind scheme, Basis basis) {
     case SchemeKind::usf:
       break;
   }
-  return with_basis<Usf, Real>(basis);
+  return with_basis<Usf, Real>(basis, Shapes{});
 }
 
 template Kernel<double> kernel(SchemeKind scheme, Basis basis);

@@ -16,13 +16,14 @@ struct Kernel {
   void (*measure_speeds)(const View<Real>& view, Report* reports);
 };
 
-/// Shape functions as compiled: GIMP with one half-length for all points or one for each, and with
-/// domains wider than a cell.
-enum class Basis { linear, gimp_common, gimp_own, gimp_wide };
+/// A shape function, by its index in the list, with one domain for all points or one for each.
+struct Basis {
+  int shape = 0;
+  bool own_domain = false;
+};
 
-/// Nodes a direction that a point reaches, and the widest domain allowed, in cells.
-int reach(Basis basis);
-double widest(Basis basis);
+/// Widest domain that points share, in cells; of wider ones each point keeps its own.
+constexpr double kWidestCommon = 1.0;
 
 template <class Real>
 Kernel<Real> find_kernel(InstructionSet set, SchemeKind scheme, Basis basis);

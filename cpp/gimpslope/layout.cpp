@@ -10,15 +10,17 @@
 namespace gimpslope {
 namespace {
 
-/// The cell of each point's first node: that of the left lower corner of its domain.
-std::vector<Cell> first_cells(const Points& points, const Grid& grid, double half_length) {
+/// The cell of each point's first node.
+std::vector<Cell> first_cells(const Points& points, const Grid& grid, double behind,
+                              double half_length) {
   std::vector<Cell> cells(points.size);
   const bool own = !points.half_length.empty();
   for (int k = 0; k < points.size; ++k) {
     const double lx = own ? points.half_length[0][k] : half_length;
     const double ly = own ? points.half_length[1][k] : half_length;
-    const double column = std::floor((points.position[0][k] - lx - grid.x()) / grid.cell());
-    const double row = std::floor((points.position[1][k] - ly - grid.y()) / grid.cell());
+    const double column =
+        std::floor((points.position[0][k] - lx - grid.x()) / grid.cell() - behind);
+    const double row = std::floor((points.position[1][k] - ly - grid.y()) / grid.cell() - behind);
     constexpr double farthest = 1e9;
     require(std::abs(column) < farthest, "position", points.position[0][k],
             "within 1e9 cells of the origin");
@@ -83,9 +85,10 @@ void share_out(Layout& layout, int points, int threads) {
 
 }  // namespace
 
-Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials,
-               int threads) {
-  std::vector<Cell> cells = first_cells(points, grid, half_length);
+Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half_length,
+               int materials, int threads) {
+  const int reach = shape.nodes;
+  std::vector<Cell> cells = first_cells(points, grid, shape.behind, half_length);
   Cell low = cells.front(), high = cells.front();
   for (const Cell& cell : cells) {
     low = {std::min(low.column, cell.column), std::min(low.row, cell.row)};

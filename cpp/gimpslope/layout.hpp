@@ -5,6 +5,7 @@
 
 #include "grid.hpp"
 #include "points.hpp"
+#include "shape/traits.hpp"
 #include "view.hpp"
 
 namespace gimpslope {
@@ -17,8 +18,8 @@ struct Layout {
 
 /// Sorts the points by row, material and column of their first node, fits the grid's window to them
 /// with a margin, and marks the nodes that they can reach before the next sort.
-/// `half_length` holds for points without their own; `reach` is the number of nodes a direction.
-Layout arrange(Points& points, Grid& grid, double half_length, int reach, int materials,
-               int threads);
+/// `half_length` holds for points without their own.
+Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half_length,
+               int materials, int threads);
 
 }  // namespace gimpslope

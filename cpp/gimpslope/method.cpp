@@ -2,10 +2,10 @@
 
 namespace gimpslope {
 
-double Blend::alpha(double dt, double cell, double half_length) const {
+double Blend::alpha(double dt, double second_moment) const {
   switch (kind) {
     case Kind::viscosity:
-      return value * dt / (cell * cell / 6.0 + half_length * half_length / 3.0);
+      return value * dt / second_moment;
     case Kind::relaxation_time:
       return dt / value;
     case Kind::alpha:

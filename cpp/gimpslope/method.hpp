@@ -1,9 +1,10 @@
 // How a scene is stepped: shape function, scheme, velocity blend, time step, loading.
 #pragma once
 
+#include <string>
+
 namespace gimpslope {
 
-enum class ShapeKind { linear, ugimp, cpgimp };
 enum class SchemeKind { usf };
 
 /// How the half-lengths of a cpGIMP domain follow the deformation.
@@ -28,9 +29,9 @@ struct Blend {
   double value = 0.0;
 
   /// Projecting a velocity field onto the grid and back damps it as a viscosity of
-  /// alpha h^2 (1/6 + l^2/(3 h^2)) / dt does, l being the half-length of a point's domain:
-  /// second moment of the hat function averaged over the domain.
-  double alpha(double dt, double cell, double half_length) const;
+  /// alpha m / dt does, m being the second moment of the shape function: for the hat averaged over
+  /// a domain of half-length l, h^2 (1/6 + l^2/(3 h^2)).
+  double alpha(double dt, double second_moment) const;
 };
 
 /// Largest stable Courant number c dt / h. Contiguous domains add up to bilinear finite elements
@@ -64,7 +65,7 @@ struct Damping {
 };
 
 struct Method {
-  ShapeKind shape = ShapeKind::ugimp;
+  std::string shape = "ugimp";  // one of shape_names()
   SchemeKind scheme = SchemeKind::usf;
   DomainUpdate domain_update = DomainUpdate::none;
   VolumeUpdate volume_update = VolumeUpdate::linear;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "shape/traits.hpp"
 
 namespace gimpslope {
 
@@ -46,7 +47,7 @@ Plain::Plain(const InitialPoints& given, const std::vector<Material>& materials,
     : method_(method), step_(find_step(instruction_set)) {
   check(given, materials.size(), method.shape);
   check(method);
-  require(method.shape == ShapeKind::ugimp, "shape", "another", "ugimp in the plain loop");
+  require(method.shape == "ugimp", "shape", method.shape, "ugimp in the plain loop");
   require(method.volumetric_strain == VolumetricStrain::point, "volumetric_strain", "cell_average",
           "point in the plain loop");
   require(margin >= 2, "margin", margin, "at least 2 cells");
@@ -122,9 +123,11 @@ double Plain::time_step() const {
 
 void Plain::advance(std::int64_t steps) {
   require(steps >= 0, "steps", steps, "zero or positive");
+  const double moment =
+      traits(find_shape(method_.shape)).second_moment(view_.cell, view_.half_length);
   for (std::int64_t k = 0; k < steps; ++k) {
     const double dt = time_step();
-    const double alpha = method_.blend.alpha(dt, view_.cell, view_.half_length);
+    const double alpha = method_.blend.alpha(dt, moment);
     if (!step_(view(), dt, alpha))
       throw std::runtime_error("a point has left the grid of the plain loop; give a larger margin");
     time_ += dt;

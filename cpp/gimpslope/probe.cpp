@@ -5,8 +5,8 @@
 
 #include "error.hpp"
 #include "rotation.hpp"
-#include "shape/gimp.hpp"
-#include "shape/linear.hpp"
+#include "shape/list.hpp"
+#include "shape/traits.hpp"
 
 namespace gimpslope {
 namespace {
@@ -20,8 +20,8 @@ ShapeValues evaluate_all(std::span<const double> position, std::span<const doubl
     std::int64_t first[2];
     double w[2][nodes], d[2][nodes];
     for (int axis = 0; axis < 2; ++axis) {
-      const double width = Shape::extended ? 2.0 * half_length[k + axis] / cell : 0.0;
-      const double edge = (position[k + axis] - origin[axis]) / cell - 0.5 * width;
+      const double width = Shape::widest > 0.0 ? 2.0 * half_length[k + axis] / cell : 0.0;
+      const double edge = (position[k + axis] - origin[axis]) / cell - 0.5 * width - Shape::behind;
       first[axis] = static_cast<std::int64_t>(std::floor(edge));
       Shape::evaluate(edge - static_cast<double>(first[axis]), width, 1.0 / width, w[axis],
                       d[axis]);
@@ -38,24 +38,32 @@ ShapeValues evaluate_all(std::span<const double> position, std::span<const doubl
   return result;
 }
 
+template <class... Shape>
+auto evaluation(int shape, List<Shape...>) {
+  constexpr auto evaluate = std::array{&evaluate_all<Shape>...};
+  return evaluate[shape];
+}
+
 }  // namespace
 
-ShapeValues shape_functions(ShapeKind kind, std::span<const double> position,
+ShapeValues shape_functions(const std::string& shape, std::span<const double> position,
                             std::span<const double> half_length, double cell,
                             std::array<double, 2> origin) {
   require(cell > 0.0 && std::isfinite(cell), "cell", cell, "positive and finite, in m");
   for (const double x : origin) require(std::isfinite(x), "origin", x, "finite, in m");
   for (const double x : position)
     require(std::abs(x) / cell < 1e9, "position", x, "finite and within 1e9 cells of zero, in m");
-  if (kind == ShapeKind::linear) return evaluate_all<Linear>(position, half_length, cell, origin);
-  double widest = 0.0;
-  for (const double l : half_length) {
-    require(l > 0.0 && 2.0 * l / cell <= WideGimp::widest * (1.0 + 1e-12), "half_length", l,
-            "positive and at most 1.5 cells, in m");
-    widest = std::max(widest, 2.0 * l / cell);
+  const double allowed = traits(find_shape(shape)).widest;
+  double width = 0.0;
+  if (allowed > 0.0) {
+    const std::string rule = "positive and at most " + text(0.5 * allowed) + " cells, in m";
+    for (const double l : half_length) {
+      require(l > 0.0 && 2.0 * l / cell <= allowed * (1.0 + 1e-12), "half_length", l, rule.c_str());
+      width = std::max(width, 2.0 * l / cell);
+    }
   }
-  return widest <= Gimp::widest ? evaluate_all<Gimp>(position, half_length, cell, origin)
-                                : evaluate_all<WideGimp>(position, half_length, cell, origin);
+  const auto evaluate = evaluation(find_shape(shape, width), Shapes{});
+  return evaluate(position, half_length, cell, origin);
 }
 
 void return_mapping(const Material& material, std::span<double> stress,

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "material/material.hpp"
@@ -20,7 +21,7 @@ struct ShapeValues {
 };
 
 /// `position` and `half_length` hold {x, y} of each point, m.
-ShapeValues shape_functions(ShapeKind kind, std::span<const double> position,
+ShapeValues shape_functions(const std::string& shape, std::span<const double> position,
                             std::span<const double> half_length, double cell,
                             std::array<double, 2> origin);
 

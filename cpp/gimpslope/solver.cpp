@@ -10,6 +10,7 @@
 #include "checks.hpp"
 #include "error.hpp"
 #include "ledger.hpp"
+#include "shape/traits.hpp"
 #include "travel.hpp"
 
 namespace gimpslope {
@@ -19,11 +20,11 @@ constexpr int kStepsBetweenSorts = 100;
 constexpr double kFastest = 1000.0;  // speed of a point, in wave speeds
 
 /// The points share one half-length unless they were given different ones, follow the deformation,
-/// or are wider than the common basis reaches.
+/// or are too wide to be shared.
 bool own_domains(const InitialPoints& points, const Method& method, double cell) {
-  if (method.shape == ShapeKind::linear) return false;
+  if (!has_domains(method.shape)) return false;
   const auto& l = points.half_length;
-  return method.shape == ShapeKind::cpgimp || 2.0 * l.front() / cell > widest(Basis::gimp_common) ||
+  return method.domain_update != DomainUpdate::none || 2.0 * l.front() / cell > kWidestCommon ||
          std::any_of(l.begin(), l.end(), [&](double value) { return value != l.front(); });
 }
 
@@ -79,7 +80,7 @@ void Solver::fill(const InitialPoints& given) {
     points_.volume[0][k] = given.volume[k];
     points_.material[k] = given.material[k];
   }
-  if (method_.shape == ShapeKind::linear) return;
+  if (!has_domains(method_.shape)) return;
   const auto& l = given.half_length;
   half_length_ = std::accumulate(l.begin(), l.end(), 0.0) / static_cast<double>(l.size());
   width_ = 2.0 * *std::max_element(l.begin(), l.end()) / grid_.cell();
@@ -99,16 +100,11 @@ void Solver::fill(const InitialPoints& given) {
 
 /// The narrowest compiled basis that holds the widest domain.
 void Solver::choose_kernel() {
-  if (method_.shape == ShapeKind::linear) {
-    basis_ = Basis::linear;
-  } else if (points_.half_length.empty()) {
-    basis_ = Basis::gimp_common;
-  } else {
-    basis_ = width_ <= widest(Basis::gimp_own) ? Basis::gimp_own : Basis::gimp_wide;
-  }
+  basis_ = {find_shape(method_.shape, width_), !points_.half_length.empty()};
+  const double allowed = traits(basis_.shape).widest;
   constexpr double rounding = 1.0 + 1e-12;
-  require(width_ <= widest(basis_) * rounding || basis_ == Basis::linear, "half_length",
-          0.5 * width_ * grid_.cell(), "at most 1.5 cells");
+  require(width_ <= allowed * rounding, "half_length", 0.5 * width_ * grid_.cell(),
+          ("at most " + text(0.5 * allowed) + " cells").c_str());
   kernel_ = find_kernel<double>(instruction_set_, method_.scheme, basis_);
   single_kernel_ = find_kernel<float>(instruction_set_, method_.scheme, basis_);
   sorted_ = nodes_ready_ = false;
@@ -170,10 +166,11 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
 void Solver::prepare() {
   if (!sorted_) {
     Stopwatch watch(&seconds_);
-    const int nodes = method_.shape == ShapeKind::cpgimp ? reach(Basis::gimp_wide) : reach(basis_);
+    const bool follows = method_.domain_update != DomainUpdate::none;
+    const int shape = follows ? find_shape(method_.shape) : basis_.shape;
     try {
-      layout_ = arrange(points(), grid_, half_length_, nodes, static_cast<int>(laws_.size()),
-                        method_.threads);
+      layout_ = arrange(points(), grid_, traits(shape), half_length_,
+                        static_cast<int>(laws_.size()), method_.threads);
     } catch (const std::invalid_argument& scattered) {
       if (steps_ == 0) throw;
       fail(scattered.what(), -1);
@@ -268,7 +265,8 @@ void Solver::fail_at(int lost, double dt) {
 /// Changes to the basis that the widest domain needs.
 void Solver::follow_width(double width) {
   width_ = width;
-  if (width_ > widest(Basis::gimp_wide)) {
+  const double allowed = traits(find_shape(method_.shape)).widest;
+  if (width_ > allowed) {
     const auto wider = [&](int a, int b) {
       const Field<double>& l = points().half_length;
       return std::max(l[0][a], l[1][a]) < std::max(l[0][b], l[1][b]);
@@ -277,12 +275,12 @@ void Solver::follow_width(double width) {
     for (int k = 1; k < size(); ++k)
       if (wider(point, k)) point = k;
     fail("the domain of point " + std::to_string(points_.number[point]) + " is " + text(width_) +
-             " cells wide, of 3 allowed; likely cause: shear or extension that domain_update "
-             "stretch or deformation_diagonal follows without bound, or soil that came apart",
+             " cells wide, of " + text(allowed) +
+             " allowed; likely cause: shear or extension that domain_update stretch or "
+             "deformation_diagonal follows without bound, or soil that came apart",
          points_.number[point]);
   }
-  const Basis needed = width_ > widest(Basis::gimp_own) ? Basis::gimp_wide : Basis::gimp_own;
-  if (needed != basis_) choose_kernel();
+  if (find_shape(method_.shape, width_) != basis_.shape) choose_kernel();
 }
 
 void Solver::damp_at_peak() {
@@ -400,7 +398,8 @@ double Solver::stable_time_step_of(const std::vector<Material>& materials) const
 }
 
 double Solver::alpha_of(double dt) const {
-  return method_.blend.alpha(dt, grid_.cell(), half_length_);
+  const ShapeTraits& shape = traits(basis_.shape);
+  return method_.blend.alpha(dt, shape.second_moment(grid_.cell(), half_length_));
 }
 
 void Solver::check_alpha(double dt) const {

@@ -118,7 +118,7 @@ class Solver {
   bool single_loaded_ = false;            // it holds the state of the points,
   mutable bool single_ahead_ = false;     // or a later one
   Layout layout_;
-  Basis basis_ = Basis::linear;
+  Basis basis_;
   Kernel<double> kernel_{};
   Kernel<float> single_kernel_{};
   Gravity gravity_;

@@ -18,7 +18,4 @@ static_assert(kFarthestStep + kTravelBetweenSorts <= kMargin);
 /// then rows - 1 + kMargin + reach - 1, the first one of the other 2 rows - kMargin.
 constexpr int slab_rows(int reach) { return reach + 2 * kMargin - 1; }
 
-/// Nodes a direction that a point reaches at most.
-constexpr int kWidestReach = 5;
-
 }  // namespace gimpslope

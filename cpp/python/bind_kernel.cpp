@@ -5,6 +5,7 @@
 #include "bind.hpp"
 #include "gimpslope/instruction_set.hpp"
 #include "gimpslope/probe.hpp"
+#include "gimpslope/shape/traits.hpp"
 #include "gimpslope/team.hpp"
 
 using namespace gimpslope;
@@ -13,12 +14,9 @@ namespace {
 
 py::tuple evaluate_shape(const std::string& shape, const Doubles& position,
                          const Doubles& half_length, double cell, std::array<double, 2> origin) {
-  const auto kind = parse<ShapeKind>(
-      "shape", shape,
-      {{"linear", ShapeKind::linear}, {"ugimp", ShapeKind::ugimp}, {"cpgimp", ShapeKind::cpgimp}});
   const py::ssize_t n = rows_of(position);
   const ShapeValues found =
-      shape_functions(kind, values_of(position, "position", n, 2),
+      shape_functions(shape, values_of(position, "position", n, 2),
                       values_of(half_length, "half_length", n, 2), cell, origin);
   const py::ssize_t nodes = found.nodes;
   py::array_t<std::int64_t> index({n, nodes, py::ssize_t{2}});
@@ -65,6 +63,7 @@ void bind_kernel(py::module_& m) {
     for (const InstructionSet set : available_instruction_sets()) names.emplace_back(name(set));
     return names;
   });
+  m.def("shapes", &shape_names);
   m.def("shape_functions", &evaluate_shape, py::arg("shape"), py::arg("position"),
         py::arg("half_length"), py::arg("cell"), py::arg("origin"));
   m.def("return_mapping", &return_stress, py::arg("material"), py::arg("stress"));

@@ -35,9 +35,7 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
                               const std::string& precision, int threads, bool allow_unstable,
                               bool ledger, const std::string& instruction_set) {
   Method method;
-  method.shape = parse<ShapeKind>(
-      "shape", shape,
-      {{"linear", ShapeKind::linear}, {"ugimp", ShapeKind::ugimp}, {"cpgimp", ShapeKind::cpgimp}});
+  method.shape = shape;
   method.domain_update =
       parse<DomainUpdate>("domain_update", domain_update,
                           {{"none", DomainUpdate::none},

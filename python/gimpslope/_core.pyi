@@ -124,6 +124,7 @@ courant_limit: float
 has_threads: bool
 
 def instruction_sets() -> list[str]: ...
+def shapes() -> list[str]: ...
 def shape_functions(
     shape: str,
     position: ArrayLike,

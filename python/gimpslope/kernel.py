@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, get_args
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -10,7 +10,7 @@ import numpy.typing as npt
 from . import _check, _core
 from ._check import FloatArray
 from .materials import DruckerPrager, Material
-from .method import Shape
+from .method import GIMP, Shape
 
 
 class ShapeFunctions(NamedTuple):
@@ -48,10 +48,10 @@ def shape_functions(
 
     Parameters
     ----------
-    shape : "linear", "ugimp" or "cpgimp"; the last two are one function of the half-length
+    shape : one of `shapes()`; "ugimp" and "cpgimp" are one function of the half-length
     position : m, shape (n, 2)
-    half_length : half the sides of the points' domains, m, shape (n, 2), at most 1.5 cells; not
-        needed with "linear"
+    half_length : half the sides of the points' domains, m, shape (n, 2), at most 1.5 cells;
+        needed with "ugimp" and "cpgimp" alone
     cell : side of a grid cell, m
     origin : a node of the grid, m
 
@@ -60,9 +60,9 @@ def shape_functions(
     TypeError, ValueError
         If a parameter is of the wrong type, shape or range.
     """
-    _check.one_of("shape", shape, get_args(Shape))
+    _check.one_of("shape", shape, shapes())
     points = _check.array("position", position, ("n", 2))
-    if half_length is None and shape != "linear":
+    if half_length is None and shape in GIMP:
         raise ValueError(f"half_length must be given with shape {shape!r}, got None")
     halves = np.zeros_like(points) if half_length is None else half_length
     halves = _check.array("half_length", halves, (len(points), 2))
@@ -128,6 +128,11 @@ def update_stress(
             _check.whole("steps", steps, 0),
         )
     )
+
+
+def shapes() -> list[str]:
+    """Names of the shape functions that this build holds."""
+    return _core.shapes()
 
 
 def instruction_sets() -> list[str]:

@@ -8,12 +8,15 @@ from typing import Any, Literal, get_args
 from . import _check, _core
 from ._record import Record
 
-Shape = Literal["linear", "ugimp", "cpgimp"]
+Shape = str  # one of `gimpslope.kernel.shapes()`
 Scheme = Literal["usf"]
 DomainUpdate = Literal["jacobian", "stretch", "deformation_diagonal"]
 VolumeUpdate = Literal["linear", "exponential"]
 Precision = Literal["double", "single"]
 VolumetricStrain = Literal["point", "cell_average"]
+
+GIMP = ("ugimp", "cpgimp")
+"""Shape functions of points that have domains."""
 
 
 @dataclass(frozen=True)
@@ -22,13 +25,15 @@ class Method(Record):
 
     Parameters
     ----------
-    shape : shape functions: "linear" (plain MPM, eq. 8), "ugimp" (GIMP with the points' first
-        domains, eqs. 14-16) or "cpgimp" (GIMP with domains that follow the deformation)
+    shape : shape functions, one of `gimpslope.kernel.shapes()`: "linear" (plain MPM, eq. 8),
+        "ugimp" (GIMP with the points' first domains, eqs. 14-16) or "cpgimp" (GIMP with domains
+        that follow the deformation)
     scheme : order of the sub-steps: "usf" (stress first, eqs. 18-26)
     alpha : share of PIC in the velocity of a point per step, in [0, 1]: 0 is FLIP, 1 is PIC
         (eq. 26). Its effect grows as the step shrinks; the next two do not depend on the step
     viscosity : the blend as a kinematic viscosity nu, m2/s, >= 0:
-        alpha = nu dt / (h2 (1/6 + lp2 / (3 h2))) for cell h and half-length lp of a point
+        alpha = nu dt / (h2 (1/6 + lp2 / (3 h2))) for cell h and half-length lp of a point; the
+        divisor is the second moment of the shape function
     relaxation_time : the blend as a time tau, s, > 0: alpha = dt / tau.
         At most one of alpha, viscosity and relaxation_time; with none alpha is 0.01, the study's
     courant : time step as a share of cell / (wave speed + speed of the points),
@@ -73,7 +78,7 @@ class Method(Record):
     ledger: bool = False
 
     def __post_init__(self) -> None:
-        _check.one_of("shape", self.shape, get_args(Shape))
+        _check.one_of("shape", self.shape, _core.shapes())
         _check.one_of("scheme", self.scheme, get_args(Scheme))
         _check.one_of("volume_update", self.volume_update, get_args(VolumeUpdate))
         _check.one_of("volumetric_strain", self.volumetric_strain, get_args(VolumetricStrain))
@@ -98,6 +103,11 @@ class Method(Record):
         if self.time_step is not None:
             return "fixed", self.time_step
         return "courant", 0.4 if self.courant is None else self.courant
+
+    @property
+    def has_domains(self) -> bool:
+        """Whether points have domains, over which GIMP averages the shape functions."""
+        return self.shape in GIMP
 
     def to_core(self) -> dict[str, Any]:
         """The keyword arguments of the compiled solver that depend on the method."""

@@ -183,12 +183,12 @@ class Recorder:
     def _write_points(self) -> None:
         solver, scene = self._solver, self._simulation.scene
         names = ["soil", "stone"][: len(scene.materials)]
-        linear = self._simulation.method.shape == "linear"
+        has_domains = self._simulation.method.has_domains
         self._writer.write_points(
             solver.position,
             solver.mass,
             solver.volume,
-            scene.points.half_length if linear else solver.half_length,
+            solver.half_length if has_domains else scene.points.half_length,
             solver.material,
             names,
         )

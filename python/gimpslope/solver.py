@@ -200,8 +200,8 @@ class Solver:
         says which points they are.
 
         Names: position, velocity, body_force (n, 2); stress (n, 4); volume, mass, plastic_strain
-        (n,); half_length (n, 2), not with shape "linear"; deformation_gradient (n, 4) as xx, xy,
-        yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
+        (n,); half_length (n, 2), with shape "ugimp" or "cpgimp"; deformation_gradient (n, 4) as
+        xx, xy, yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
         """
         return self._core.view(name)
 

@@ -53,6 +53,10 @@ def hat_mean(z: Array, half_length: Array) -> Array:
     return np.asarray(area / (high - low))
 
 
+def test_every_shape_function_is_tested() -> None:
+    assert {shape for shape, _ in SHAPES} == set(_core.shapes())
+
+
 @pytest.mark.parametrize(("shape", "widest"), SHAPES, ids=IDS)
 def test_partition_of_unity(shape: str, widest: float) -> None:
     _, values, gradients = evaluate(shape, *sample(widest))

@@ -347,7 +347,7 @@ def test_shape_functions_refuse() -> None:
     with pytest.raises(ValueError, match="half_length must be given with shape 'ugimp', got None"):
         gs.kernel.shape_functions("ugimp", [(0.0, 0.0)], cell=1.0)
     with pytest.raises(ValueError, match=r"shape must be one of .*got 'cubic'"):
-        gs.kernel.shape_functions("cubic", [(0.0, 0.0)], cell=1.0)  # type: ignore[arg-type]
+        gs.kernel.shape_functions("cubic", [(0.0, 0.0)], cell=1.0)
     with pytest.raises(ValueError, match=r"half_length must be .*\(1, 2\)"):
         gs.kernel.shape_functions("ugimp", [(0.0, 0.0)], np.ones((2, 2)), cell=1.0)
     with pytest.raises(ValueError, match=r"cell must be .*got 0"):

@@ -6,16 +6,17 @@
 #include <cmath>
 
 #include "../instruction_set.hpp"
-#include "../travel.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 /// Domains up to one cell wide, which reach three nodes.
 struct Gimp {
+  static constexpr const char* names[] = {"ugimp", "cpgimp"};
   static constexpr int nodes = 3;
-  static constexpr bool extended = true;
   static constexpr double widest = 1.0;
+  static constexpr double behind = 0.0;    // from the left edge of the domain
+  static constexpr double variance = 2.0;  // of the hat, before it is averaged
 
   /// Values w and derivatives d (times the cell size); `xi` cells from the first node to the left
   /// edge of the domain, which is `width` = 2 l / h cells wide, `inverse` = 1 / width. Free of
@@ -37,9 +38,11 @@ struct Gimp {
 
 /// Domains up to three cells wide, which reach five nodes: a cpGIMP domain after strong extension.
 struct WideGimp {
-  static constexpr int nodes = kWidestReach;
-  static constexpr bool extended = true;
+  static constexpr auto& names = Gimp::names;
+  static constexpr int nodes = 5;
   static constexpr double widest = 3.0;
+  static constexpr double behind = Gimp::behind;
+  static constexpr double variance = Gimp::variance;
 
   static void evaluate(double xi, double width, double inverse, double (&w)[nodes],
                        double (&d)[nodes]) {

@@ -7,12 +7,14 @@ namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 struct Linear {
-  static constexpr int nodes = 2;          // a direction
-  static constexpr bool extended = false;  // points have no half-length
-  static constexpr double widest = 0.0;    // largest domain width, cells
+  static constexpr const char* names[] = {"linear"};  // of Method(shape=...)
+  static constexpr int nodes = 2;                     // a direction
+  static constexpr double widest = 0.0;    // domain of a point, in cells; 0 where it has none
+  static constexpr double behind = 0.0;    // cells from the point back to where its nodes begin
+  static constexpr double variance = 2.0;  // second moment, in those of a box one cell wide
 
-  /// Values w and derivatives d (times the cell size) at the nodes of a point `xi` cells to the
-  /// right of the first one.
+  /// Values w and derivatives d (times the cell size) at the nodes of a point that lies
+  /// xi + behind cells to the right of the first one, 0 <= xi < 1.
   static void evaluate(double xi, double /*width*/, double /*inverse*/, double (&w)[nodes],
                        double (&d)[nodes]) {
     w[0] = 1.0 - xi;

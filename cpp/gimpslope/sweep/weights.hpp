@@ -59,8 +59,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
   const double left = PointsView<Real>::relative ? 0.0 : grid.left;
   const double bottom = PointsView<Real>::relative ? 0.0 : grid.bottom;
   const double stride = grid.stride;
-  const double common = Shape::extended ? 2.0 * view.half_length * per_cell : 0.0;
-  const double common_inverse = Shape::extended ? 1.0 / common : 0.0;
+  const double common = Shape::widest > 0.0 ? 2.0 * view.half_length * per_cell : 0.0;
+  const double common_inverse = Shape::widest > 0.0 ? 1.0 / common : 0.0;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     double width_x = common, width_y = common;
@@ -71,8 +71,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
       inverse_x = 1.0 / width_x;
       inverse_y = 1.0 / width_y;
     }
-    const double x = (px[k] - left) * per_cell - 0.5 * width_x;
-    const double y = (py[k] - bottom) * per_cell - 0.5 * width_y;
+    const double x = (px[k] - left) * per_cell - 0.5 * width_x - Shape::behind;
+    const double y = (py[k] - bottom) * per_cell - 0.5 * width_y - Shape::behind;
     const double column = static_cast<int>(x), row = static_cast<int>(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
     if constexpr (PointsView<Real>::relative) out.first[k] += home[k];
