@@ -22,18 +22,16 @@ Stress stress_of(const Points& p, int k) {
 
 }  // namespace
 
-Energies Solver::energies() const {
-  const Points& p = points();
-  Energies sum{};
-  double fastest = 0.0;
-  for (int k = 0; k < p.size; ++k) {
-    const double mass = p.mass[0][k], square = squared_speed(p, k);
-    fastest = std::max(fastest, square);
-    sum.kinetic += 0.5 * mass * square;
-    sum.potential -= mass * (gravity_.x * p.position[0][k] + gravity_.y * p.position[1][k]);
-    sum.elastic += p.volume[0][k] * strain_energy(laws_[p.material[k]], stress_of(p, k));
+Energies Solver::energies() {
+  kernel_.measure_energies(view_of(points().view()), gravity_.x, gravity_.y, reports_.data());
+  Energies sum;
+  for (const Report& report : reports_) {
+    sum.kinetic += report.energies.kinetic;
+    sum.potential += report.energies.potential;
+    sum.elastic += report.energies.elastic;
+    sum.max_speed = std::max(sum.max_speed, report.energies.max_speed);
   }
-  sum.max_speed = std::sqrt(fastest);
+  sum.max_speed = std::sqrt(sum.max_speed);
   return sum;
 }
 
@@ -108,10 +106,13 @@ std::vector<double> Solver::values(const std::string& name) {
     return std::vector<double>(2 * static_cast<std::size_t>(size()), 0.0);
   const FieldView f = field(name);
   std::vector<double> result(static_cast<std::size_t>(f.components) * size());
-  for (int k = 0; k < size(); ++k)
-    for (int c = 0; c < f.components; ++c)
-      result[static_cast<std::size_t>(f.components) * points_.number[k] + c] =
-          f.data[k * f.point_stride + c * f.component_stride];
+  for (int c = 0; c < f.components; ++c) {
+    const double* component = f.data + c * f.component_stride;
+    double* given = result.data() + c;
+    for (int k = 0; k < size(); ++k)
+      given[static_cast<std::ptrdiff_t>(f.components) * points_.number[k]] =
+          component[k * f.point_stride];
+  }
   return result;
 }
 

@@ -4,6 +4,7 @@
 
 #include "scheme/usf.hpp"
 #include "shape/list.hpp"
+#include "sweep/energies.hpp"
 #include "sweep/speeds.hpp"
 
 namespace gimpslope {
@@ -12,7 +13,7 @@ namespace {
 
 template <class Real, class Combination>
 Kernel<Real> of() {
-  return {&Combination::prepare, &Combination::step, &measure_speeds<Real>};
+  return {&Combination::prepare, &Combination::step, &measure_speeds<Real>, &measure_energies};
 }
 
 /// Points share domains up to a certain width, have their own beyond it, or have none.

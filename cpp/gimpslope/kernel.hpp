@@ -14,6 +14,8 @@ struct Kernel {
   void (*prepare)(const View<Real>& view);
   void (*step)(const View<Real>& view, const StepInput& input, Report* reports);
   void (*measure_speeds)(const View<Real>& view, Report* reports);
+  void (*measure_energies)(const View<double>& view, double gravity_x, double gravity_y,
+                           Report* reports);
 };
 
 /// A shape function, by its index in the list, with one domain for all points or one for each.

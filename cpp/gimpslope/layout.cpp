@@ -41,16 +41,15 @@ void sort_by(std::vector<std::int32_t>& order, int keys, Key key) {
   order.swap(sorted);
 }
 
-/// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a single
-/// one: 0, 1 or 2 for each point.
+/// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a
+/// single one: 0, 1 or 2 for each point.
 template <class Same>
 std::vector<std::uint8_t> parts_of_cells(const std::vector<std::int32_t>& order, Same same) {
   std::vector<std::uint8_t> part(order.size());
   for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
     for (end = begin + 1; end < order.size() && same(order[begin], order[end]);) ++end;
     const std::size_t fours = begin + (end - begin) / 4 * 4, pairs = begin + (end - begin) / 2 * 2;
-    for (std::size_t k = begin; k < end; ++k)
-      part[order[k]] = k < fours ? 0 : (k < pairs ? 1 : 2);
+    for (std::size_t k = begin; k < end; ++k) part[order[k]] = k < fours ? 0 : (k < pairs ? 1 : 2);
   }
   return part;
 }

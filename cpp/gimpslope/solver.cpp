@@ -163,6 +163,8 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
           &seconds_};
 }
 
+template View<double> Solver::view_of(const PointsView<double>& points);
+
 void Solver::prepare() {
   if (!sorted_) {
     Stopwatch watch(&seconds_);

@@ -22,12 +22,6 @@
 
 namespace gimpslope {
 
-/// Energies in J per metre of thickness; the potential is zero at the origin of the coordinates.
-struct Energies {
-  double kinetic, potential, elastic;
-  double max_speed;  // m/s
-};
-
 /// A property of the points in storage order: component c of point k is at
 /// data[k * point_stride + c * component_stride].
 struct FieldView {
@@ -60,7 +54,7 @@ class Solver {
   /// Time and steps start anew at zero, and so do the plastic strain and the ledger.
   void reset_clock();
 
-  Energies energies() const;
+  Energies energies();
   Ledger ledger() const;  // of a method that keeps one
 
   /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,

@@ -104,6 +104,12 @@ struct Speeds {
   double point = 0.0, wave = 0.0;
 };
 
+/// Energies in J per metre of thickness; the potential is zero at the origin of the coordinates.
+struct Energies {
+  double kinetic = 0.0, potential = 0.0, elastic = 0.0;
+  double max_speed = 0.0;  // m/s
+};
+
 /// What a slab reports of a step. Maxima do not depend on the order of the slabs.
 struct Report {
   double travel = 0.0;     // largest displacement of a point, cells
@@ -111,6 +117,7 @@ struct Report {
   double width = 0.0;      // largest domain width, cells
   Ledger ledger;           // the points' entries, where one is kept
   Speeds speeds;           // after the step, where asked for
+  Energies energies;       // where asked for
   std::int32_t lost = -1;  // storage index of a point that moved or grew beyond the limit
 };
 

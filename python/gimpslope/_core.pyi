@@ -55,6 +55,7 @@ class Solver:
         scheme: str = ...,
         blend: tuple[str, float] = ...,
         time_step: tuple[str, float] = ...,
+        precision: str = ...,
         threads: int = ...,
         allow_unstable: bool = ...,
         ledger: bool = ...,
@@ -93,6 +94,8 @@ class Solver:
     def alpha(self) -> float: ...
     @property
     def bytes(self) -> int: ...
+    @property
+    def seconds(self) -> dict[str, float]: ...
 
 class Plain:
     def __init__(
@@ -119,6 +122,11 @@ class Plain:
     def get(self, name: str) -> NDArray[np.float64]: ...
     @property
     def time(self) -> float: ...
+
+class Machine:
+    def __init__(self, *, threads: int, bytes: int, instruction_set: str = ...) -> None: ...
+    def multiply_add(self, rounds: int) -> int: ...
+    def read(self, passes: int) -> int: ...
 
 courant_limit: float
 has_threads: bool

@@ -16,7 +16,7 @@ import gimpslope as gs
 from . import figures
 from .recording import Recorder
 from .simulation import Simulation
-from .studies import benchmark, convergence, reference, verify
+from .studies import bench, convergence, plain_data, reference, verify
 from .studies.verify import report
 
 
@@ -182,21 +182,37 @@ def _converge(options: argparse.Namespace) -> Callable[[], int]:
 
 
 def _bench(options: argparse.Namespace) -> Callable[[], int]:
+    if options.guard:
+        return _guard(options)
+    plan = bench.Plan(options.points, options.threads)
     _check_file("--json", options.json)
-    cases = [
-        benchmark.Case(points, threads, ledger)
-        for points in options.points
-        for threads in options.threads
-        for ledger in ((False, True) if options.ledger else (False,))
-    ]
+    directory = "bench" if options.output is None else options.output
+    _make_directory("--output", directory)
 
     def command() -> int:
-        measurements = [case.measure() for case in cases]
-        print(benchmark.table(measurements))
+        results = bench.run(plan, lambda what: print(what, file=sys.stderr, flush=True))
+        print(bench.report.text(results))
         if options.json is not None:
-            rows = [measurement.to_dict() for measurement in measurements]
-            Path(options.json).write_text(json.dumps(rows, indent=2) + "\n")
+            Path(options.json).write_text(plain_data.dumps(results.to_dict()))
+        bench.report.write(results, directory)
+        print(f"table and picture: {directory}{os.sep}")
         return 0
+
+    return command
+
+
+def _guard(options: argparse.Namespace) -> Callable[[], int]:
+    for name in ("points", "threads", "json", "output"):
+        if (given := getattr(options, name)) is not None:
+            raise ValueError(f"--{name} must be left out with --guard, got {given!r}")
+
+    def command() -> int:
+        ratios = bench.guard.ratios()
+        print("\n".join(bench.guard.lines(ratios)))
+        failures = bench.guard.failures(ratios)
+        for failure in failures:
+            print(f"gimpslope: {failure}", file=sys.stderr)
+        return 1 if failures else 0
 
     return command
 
@@ -207,6 +223,9 @@ def _info(_: argparse.Namespace) -> Callable[[], int]:
             f"gimpslope {gs.__version__}, Python {platform.python_version()}, {platform.machine()}"
         )
         print(f"instruction sets: {', '.join(gs.kernel.instruction_sets())} (the last is used)")
+        print(
+            f"threads: {'any number' if gs.kernel.has_threads() else 'one, for the build has none'}"
+        )
         print(f"processors: {os.cpu_count()}")
         return 0
 
@@ -291,18 +310,27 @@ def _parser() -> argparse.ArgumentParser:
     )
     finer.add_argument("--quiet", action="store_true", help="no progress bars")
 
-    bench = commands.add_parser("bench", help="measure the speed of the kernel on slope A")
-    bench.set_defaults(prepare=_bench)
-    bench.add_argument(
-        "--points", type=int, nargs="+", default=[23_490], metavar="N", help="(default: 23490)"
+    speed = commands.add_parser("bench", help="measure the speed of the kernel on slope A")
+    speed.set_defaults(prepare=_bench)
+    speed.add_argument(
+        "--points",
+        type=int,
+        nargs="+",
+        metavar="N",
+        help=f"(default: {' '.join(map(str, bench.SIZES))})",
     )
-    bench.add_argument(
-        "--threads", type=int, nargs="+", default=[1], metavar="N", help="(default: 1)"
+    speed.add_argument(
+        "--threads", type=int, nargs="+", metavar="N", help="(default: 1 and all processors)"
     )
-    bench.add_argument(
-        "--ledger", action="store_true", help="measure with the energy ledger as well"
+    speed.add_argument("--json", metavar="FILE", help="write the measurements as JSON")
+    speed.add_argument(
+        "--output", metavar="DIR", help="for the table and the picture (default: bench)"
     )
-    bench.add_argument("--json", metavar="FILE", help="write the measurements as JSON")
+    speed.add_argument(
+        "--guard",
+        action="store_true",
+        help="fail if the kernel has become slow against the plain loop, and measure nothing else",
+    )
 
     info = commands.add_parser("info", help="show version and instruction sets")
     info.set_defaults(prepare=_info)

@@ -173,9 +173,7 @@ class Recorder:
             self._snapshot_times.pop(0)
             due = True
         if due:
-            self._hand_over_rows()
             self._writer.append_snapshot(self._solver.time, self._fields())
-            self._flushed = clock.monotonic()
 
     def _fields(self) -> dict[str, Any]:
         return {name: getattr(self._solver, name) for name in FIELDS}

@@ -122,6 +122,7 @@ def write_run(path: Path, *, until: float = END, finished: bool = True) -> Run:
     writer.append_energy(energy_rows(2, np.arange(0, until + 1e-9, ENERGY_INTERVAL)))
     for time in np.arange(0, until + 1e-9, SNAPSHOT_INTERVAL):
         writer.append_snapshot(time, fields(time))
+    writer.flush()
     if finished:
         writer.write_final(until, fields(until))
         writer.write_timing(wall_seconds=2.0, point_steps=1000)

@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 from gimpslope import cli, figures
-from gimpslope.studies import benchmark, reference, verify
+from gimpslope.studies import reference, verify
+from gimpslope.studies.bench import guard
 from gimpslope.studies.verify import bar
 
 COARSE = ["run", "soil", "--cell", "0.8", "--duration", "0.2", "--quiet"]
@@ -170,40 +171,56 @@ def test_info(capsys: pytest.CaptureFixture[str]) -> None:
         assert name in shown
 
 
-def test_bench(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(benchmark, "_SECONDS", 0.02)
-    words = "bench --points 1500 --threads 1 2 --ledger --json bench.json"
+@pytest.fixture
+def short_bench(monkeypatch: pytest.MonkeyPatch) -> None:
+    parts = {"in_turn.SECONDS": 0.003, "machine.MEMORY": 2**20, "output.SHARE": 0.01}
+    for name, value in (parts | {"single.STEPS": 50}).items():
+        monkeypatch.setattr(f"gimpslope.studies.bench.{name}", value)
+
+
+@pytest.mark.usefixtures("short_bench")
+def test_bench(capsys: pytest.CaptureFixture[str]) -> None:
+    words = "bench --points 400 1500 --threads 1 2 --json bench.json --output speed"
     assert cli.main(words.split()) == 0
     shown = capsys.readouterr().out
-    rows = json.loads(Path("bench.json").read_text())
-    assert [(row["threads"], row["ledger"]) for row in rows] == [
-        (threads, ledger) for threads in (1, 2) for ledger in (False, True)
-    ]
+    rows = json.loads(Path("bench.json").read_text())["speeds"]
+    assert [row["threads"] for row in rows[:4]] == [1, 2, 1, 2]
+    assert len(rows) == 4 + 5
     for row in rows:
-        assert 1300 < row["points"] < 1700
+        assert 300 < row["points"] < 1700
         assert 0 < row["slowest"] <= row["median"] <= row["fastest"]
-        assert 0 < row["bytes_per_point"] < 1000
         assert f"{row['median'] / 1e6:.1f}" in shown
+    assert Path("speed/bench.txt").read_text() in shown
+    assert Path("speed/bench.png").stat().st_size > 20_000
 
 
 @pytest.mark.parametrize(
-    "words",
-    [
-        "--threads 0",
-        pytest.param("--points 0"),
-        pytest.param("--points -5"),
-        pytest.param("--json nowhere/b.json"),
-    ],
+    "words", ["--threads 0", "--points 0", "--points -5", "--json nowhere/b.json", "--output b.txt"]
 )
-def test_bench_refuses(
-    words: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(benchmark, "_SECONDS", 0.001)
+def test_bench_refuses(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("b.txt").write_text("")
     name, value = words.split()
     small = [] if name == "--points" else ["--points", "400"]
     assert cli.main(["bench", *small, name, value]) == 2
     shown = capsys.readouterr()
     assert name.strip("-") in shown.err and value in shown.err and shown.out == ""
+
+
+@pytest.mark.parametrize(("on_two", "code"), [(9.5, 0), (7.5, 1)])
+def test_bench_guard(
+    on_two: float, code: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(guard, "ratios", lambda: {1: 6.25, 2: on_two})
+    assert cli.main(["bench", "--guard"]) == code
+    shown = capsys.readouterr()
+    assert "6.25" in shown.out and f"{on_two:.2f}" in shown.out
+    assert ("too slow on 2 threads" in shown.err) == bool(code)
+
+
+@pytest.mark.parametrize("words", ["--points 400", "--threads 1", "--json b.json", "--output b"])
+def test_bench_guard_stands_alone(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["bench", "--guard", *words.split()]) == 2
+    assert f"{words.split()[0]} must be left out" in capsys.readouterr().err
 
 
 def test_verify(capsys: pytest.CaptureFixture[str]) -> None:

@@ -218,6 +218,7 @@ def _states_on_disk(writer: hdf5.RunWriter) -> list[bytes]:
             times = 0.001 * np.arange(first, first + 500)
             writer.append_energy(synthetic.energy_rows(2, times))
             writer.append_snapshot(times[0], synthetic.fields(times[0]))
+            writer.flush()
         writer.write_trigger(energy_released=1.0, settling_time=2.0, settling_ratio=3.0)
         writer.write_final(3.0, synthetic.fields(3.0))
         writer.write_timing(1.0, 2)

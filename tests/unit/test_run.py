@@ -145,6 +145,7 @@ def test_a_run_can_be_read_while_it_is_written(tmp_path: Path) -> None:
     run = Run(writer.path)
     for time in (0.0, 0.25):
         writer.append_snapshot(time, synthetic.fields(time))
+        writer.flush()
         assert run.times[-1] == time
 
 

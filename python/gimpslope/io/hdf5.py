@@ -105,12 +105,17 @@ FIELDS = {
     "volume": Quantity("f8", (), "m2", "volume per metre out of the plane"),
 }
 
+SNAPSHOT_FIELDS = {  # displacements are differences of positions, which keep all their digits
+    name: quantity if name == "position" else quantity._replace(dtype="f4")
+    for name, quantity in FIELDS.items()
+}
+
 
 class RunWriter:
     """Writes one run file.
 
-    Energy rows stay in memory until `flush`; snapshots, the trigger and the final state are
-    written at once, with the rows before them.
+    Energy rows and snapshots stay in memory until `flush`; the trigger and the final state are
+    written at once, with what came before them.
 
     Parameters
     ----------
@@ -143,6 +148,7 @@ class RunWriter:
         self.path = Path(path)
         self._columns = ENERGY | (LEDGER if ledger else {})
         self._rows: list[Arrays] = []
+        self._snapshots: list[Arrays] = []
         self._count = 0
         _make_room(self.path, overwrite)
         with change(self.path) as file:
@@ -203,13 +209,10 @@ class RunWriter:
         self._rows.append(_checked(rows, self._columns, count))
 
     def append_snapshot(self, time: float, fields: Mapping[str, ArrayLike]) -> None:
-        """Write one snapshot of the slide at `time` (s): an array for every name in `FIELDS`."""
-        values = _checked(fields, FIELDS, self._count)
-        with self._flushed() as file:
-            snapshots = file["snapshots"]
-            for name, value in values.items():
-                _extend(snapshots[name], value[np.newaxis])
-            _extend(snapshots["time"], np.array([time]))
+        """Keep one snapshot of the slide at `time` (s), an array for every name in `FIELDS`, for
+        the next flush."""
+        values = _checked(fields, SNAPSHOT_FIELDS, self._count)
+        self._snapshots.append(values | {"time": np.array(time)})
 
     def write_trigger(
         self, *, energy_released: float, settling_time: float, settling_ratio: float
@@ -250,22 +253,27 @@ class RunWriter:
                 file.attrs["summary"] = json.dumps(dict(summary))
 
     def flush(self) -> None:
-        """Write the energy rows kept in memory."""
-        if self._rows:
+        """Write the energy rows and snapshots kept in memory."""
+        if self._rows or self._snapshots:
             with self._flushed():
                 pass
 
     @contextmanager
     def _flushed(self) -> Iterator[h5py.File]:
-        """The file opened for a change, with the rows kept in memory written first."""
+        """The file opened for a change, with all that is kept in memory written first."""
         with uninterrupted():
             with change(self.path) as file:
                 if self._rows:
                     for name in self._columns:
                         column = np.concatenate([rows[name] for rows in self._rows])
                         _extend(file["energy"][name], column)
+                if self._snapshots:
+                    for name in (*FIELDS, "time"):
+                        moments = np.stack([moment[name] for moment in self._snapshots])
+                        _extend(file["snapshots"][name], moments)
                 yield file
             self._rows.clear()
+            self._snapshots.clear()
 
 
 def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:
@@ -415,10 +423,9 @@ def _create_fixed(group: h5py.Group, values: Arrays, quantities: Mapping[str, Qu
 def _create_snapshots(group: h5py.Group, count: int) -> None:
     time = Quantity("f8", (), "s", "time from the trigger")
     _create_growing(group, "time", time, chunk=_TIME_CHUNK)
-    for name, quantity in FIELDS.items():
-        dtype = "f8" if name == "position" else "f4"  # displacements are differences of positions
+    for name, quantity in SNAPSHOT_FIELDS.items():
         shape = (count, *quantity.shape)
-        _create_growing(group, name, quantity._replace(dtype=dtype, shape=shape), chunk=1)
+        _create_growing(group, name, quantity._replace(shape=shape), chunk=1)
 
 
 def _create_growing(group: h5py.Group, name: str, quantity: Quantity, *, chunk: int) -> None:

@@ -1,0 +1,43 @@
+"""A guard against the kernel becoming slow: how many times faster than the plain loop it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from .cases import Case
+from .plan import all_threads
+from .speed import measure
+
+LIMITS = MappingProxyType({1: 5.0, 2: 8.0})
+"""Least ratio of the kernel's speed on slope A to the plain loop's on one thread, by threads."""
+
+
+def ratios() -> dict[int, float]:
+    """The ratio on each number of threads in `LIMITS` that this machine runs side by side."""
+    cases = [Case(threads=n) for n in LIMITS if n <= all_threads()]
+    return {one.case.threads: one.ratio for one in measure(cases)}
+
+
+def lines(ratios: Mapping[int, float]) -> list[str]:
+    """What was measured, in words, and what was not."""
+    return [
+        f"{_threads(n)}: {ratios[n]:.2f} times the plain loop, at least {limit:g} wanted"
+        if n in ratios
+        else f"{_threads(n)}: not measured, for this machine does not run so many side by side"
+        for n, limit in LIMITS.items()
+    ]
+
+
+def failures(ratios: Mapping[int, float]) -> list[str]:
+    """A sentence for each number of threads on which the kernel is too slow."""
+    return [
+        f"the kernel is too slow on {_threads(n)}: {ratio:.2f} times the plain loop, "
+        f"but it must be at least {LIMITS[n]:g} times"
+        for n, ratio in ratios.items()
+        if not ratio >= LIMITS[n]
+    ]
+
+
+def _threads(count: int) -> str:
+    return f"{count} thread" + ("s" if count > 1 else "")

@@ -1,0 +1,86 @@
+"""The cost of output: slope A as a user runs it, against the same steps without a file.
+
+The file is written where the system keeps temporary files.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from ...recording import Recorder
+from ...run import Run
+from ...simulation import Simulation
+from ...solver import Solver
+from . import in_turn
+from .cases import Case
+
+DURATION = 5.0  # s, of the run that is meant
+SNAPSHOTS = 200  # in it
+ROW_INTERVAL = 1e-3  # s
+SHARE = 0.05
+"""Of that run, from its start, which is what is measured."""
+
+_REPEATS = 5
+
+
+@dataclass(frozen=True)
+class OutputCost:
+    """What output costs a run, in one pass with it and one without.
+
+    Attributes
+    ----------
+    points, threads : of the run
+    steps, snapshots, rows : taken and written
+    share : of the wall time that is saved when the same steps are taken without output
+    parts : shares of the wall time: stress, move, nodes, sort, output (what passes between the
+        steps), and the rest
+    """
+
+    points: int
+    threads: int
+    steps: int
+    snapshots: int
+    rows: int
+    share: float
+    parts: dict[str, float]
+
+
+def measure(case: Case) -> OutputCost:
+    """Run a slope of the size, threads and method of a case, with and without output, in turn: the
+    pass with the median share."""
+    passes = sorted((_pass(case) for _ in range(_REPEATS)), key=lambda cost: cost.share)
+    return passes[_REPEATS // 2]
+
+
+def _pass(case: Case) -> OutputCost:
+    scene = case.slope().scene
+    simulation = Simulation(scene, case.method(), duration=SHARE * DURATION)
+    solver = simulation.solver
+    solver.set_materials(scene.materials)  # let go at once, without settling
+    with TemporaryDirectory() as folder:
+        recorder = Recorder(
+            simulation,
+            Path(folder) / "slope_a.h5",
+            energy_interval=ROW_INTERVAL,
+            snapshot_interval=DURATION / SNAPSHOTS,
+            progress=False,
+        )
+        with recorder:
+            taken = in_turn.seconds(lambda _: simulation.slide(recorder), 1)
+        run = Run(recorder.path)
+        snapshots, rows = len(run.times), len(run.energy)
+        stepping = float(run.attributes["timing"]["wall_seconds"])
+    bare = in_turn.seconds(Solver.of(scene, case.method()).advance, solver.steps)
+    spent = solver.seconds
+    spent |= {"output": taken - stepping, "rest": stepping - sum(spent.values())}
+    return OutputCost(
+        points=len(solver),
+        threads=case.threads,
+        steps=solver.steps,
+        snapshots=snapshots,
+        rows=rows,
+        share=1.0 - bare / taken,
+        parts={name: seconds / taken for name, seconds in spent.items()},
+    )
