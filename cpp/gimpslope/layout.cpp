@@ -104,21 +104,22 @@ Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half
   };
   sort_by(order, high.column - low.column + 1,
           [&](std::int32_t point) { return cells[point].column - low.column; });
-  const auto row_and_material = [&](std::int32_t point) {
-    return row(point) * materials + points.material[point];
+  // Rows of a slab once for each material, so that blocks of one material are long.
+  const int rows = slab_rows(reach);
+  const auto place = [&](std::int32_t point) {
+    const int slab = row(point) / rows;
+    return (slab * materials + points.material[point]) * rows + row(point) % rows;
   };
-  const int keys = (high.row - low.row + 1) * materials;
-  sort_by(order, keys, row_and_material);
+  const int places = ((high.row - low.row) / rows + 1) * materials * rows;
+  sort_by(order, places, place);
   const auto part = parts_of_cells(order, [&](std::int32_t a, std::int32_t b) {
-    return cells[a].column == cells[b].column && row_and_material(a) == row_and_material(b);
+    return cells[a].column == cells[b].column && place(a) == place(b);
   });
-  sort_by(order, 3 * keys,
-          [&](std::int32_t point) { return 3 * row_and_material(point) + part[point]; });
+  sort_by(order, 3 * places, [&](std::int32_t point) { return 3 * place(point) + part[point]; });
 
   // Blocks begin on cache lines where they can, which full ones of kBlock points do.
   constexpr int kLine = kCacheLine / sizeof(double);
   static_assert(kBlock % kLine == 0);
-  const int rows = slab_rows(reach);
   Layout layout;
   for (int k = 0; k < points.size; ++k) {
     const std::int32_t point = order[k];
