@@ -24,7 +24,7 @@ void update_domains(const View<Real>& view, int begin, int n) {
     case DomainUpdate::jacobian:
 #pragma omp simd
       for (int k = 0; k < n; ++k) {
-        const double root = std::sqrt(volume[k]);
+        const double root = std::sqrt(static_cast<double>(volume[k]));
         lx[k] = reference_x[k] * root;
         ly[k] = reference_y[k] * root;
       }
@@ -48,8 +48,8 @@ void update_domains(const View<Real>& view, int begin, int n) {
       const Real *fxx = p.deformation[0] + begin, *fyy = p.deformation[3] + begin;
 #pragma omp simd
       for (int k = 0; k < n; ++k) {
-        lx[k] = reference_x[k] * fxx[k];
-        ly[k] = reference_y[k] * fyy[k];
+        lx[k] = reference_x[k] * static_cast<double>(fxx[k]);
+        ly[k] = reference_y[k] * static_cast<double>(fyy[k]);
       }
       return;
     }

@@ -93,6 +93,11 @@ FieldView Solver::field(const std::string& name) {
              method_.shape);
 }
 
+FieldView Solver::watch(const std::string& name) {
+  watched_ = true;
+  return field(name);
+}
+
 /// Body forces take room, in points and nodes, from when one is first set or looked at.
 void Solver::keep_body_forces() {
   if (!points().body_force.empty()) return;

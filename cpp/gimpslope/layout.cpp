@@ -42,7 +42,8 @@ void sort_by(std::vector<std::int32_t>& order, int keys, Key key) {
 }
 
 /// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a
-/// single one: 0, 1 or 2 for each point.
+/// single one: 0, 1 or 2 for each point. Sorted by these, points that share their nodes come in
+/// runs of one length, and the processor foresees where a run ends.
 template <class Same>
 std::vector<std::uint8_t> parts_of_cells(const std::vector<std::int32_t>& order, Same same) {
   std::vector<std::uint8_t> part(order.size());

@@ -16,7 +16,8 @@ struct Layout {
   std::vector<std::int32_t> shares;  // first slab of each thread, and their number
 };
 
-/// Sorts the points by slab, material, row and column of their first node, fits the grid's window
+/// Sorts the points by slab, material and row of their first node, and each row by column, first
+/// all that make fours of a cell, then pairs, then single ones. Fits the grid's window
 /// to them with a margin, and marks the nodes that they can reach before the next sort.
 /// `half_length` holds for points without their own.
 Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half_length,

@@ -1,6 +1,7 @@
 #include "points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace gimpslope {
@@ -96,16 +97,15 @@ std::int64_t Points::bytes() const {
              (material.capacity() + number.capacity() + integer_scratch_.capacity());
 }
 
-void SinglePoints::load(const Points& points, const GridView& window) {
+void SinglePoints::load(const Points& points, const GridView& window, double reach) {
   const int n = points.size;
   origin_[0] = window.left;
   origin_[1] = window.bottom;
   cell_ = window.cell;
   stride_ = window.stride;
   home_.resize(n);
+  const int back = static_cast<int>(std::ceil(reach));
   for (int k = 0; k < n; ++k) {
-    // Far enough to the left and below that no domain's edge comes to lie before it.
-    constexpr int back = 3;
     const int column = static_cast<int>((points.position[0][k] - origin_[0]) / cell_) - back;
     const int row = static_cast<int>((points.position[1][k] - origin_[1]) / cell_) - back;
     home_[k] = std::max(row, 0) * stride_ + std::max(column, 0);
@@ -122,12 +122,17 @@ void SinglePoints::load(const Points& points, const GridView& window) {
       state_.position[axis][k] = static_cast<float>(points.position[axis][k] - node(axis, k));
 }
 
-void SinglePoints::store(Points& points) const {
-  const auto from = state_.fields();
-  const auto to = points.fields();
-  for (std::size_t f = 0; f < from.size(); ++f)
-    for (int c = 0; c < from[f]->components(); ++c)
-      std::copy_n((*from[f])[c], points.size, (*to[f])[c]);
+void SinglePoints::store(Points& points, bool domains_follow) const {
+  const auto copy = [&](const Field<float>& from, Field<double>& to) {
+    for (int c = 0; c < from.components(); ++c) std::copy_n(from[c], points.size, to[c]);
+  };
+  copy(state_.position, points.position);
+  copy(state_.velocity, points.velocity);
+  copy(state_.stress, points.stress);
+  copy(state_.volume, points.volume);
+  copy(state_.plastic_strain, points.plastic_strain);
+  copy(state_.deformation, points.deformation);
+  if (domains_follow) copy(state_.half_length, points.half_length);
   for (int axis = 0; axis < 2; ++axis)
     for (int k = 0; k < points.size; ++k) points.position[axis][k] += node(axis, k);
 }

@@ -79,11 +79,12 @@ inline double squared_speed(const Points& points, int k) {
 /// near each point, so that they keep their digits far from the origin.
 class SinglePoints {
  public:
-  /// Takes the state of points that have just been sorted, for a window of nodes.
-  void load(const Points& points, const GridView& window);
+  /// Takes the state of points in a window of nodes; domains reach up to `reach` cells to the left
+  /// of a point and below it before the next load.
+  void load(const Points& points, const GridView& window, double reach);
 
-  /// Gives it back.
-  void store(Points& points) const;
+  /// Gives back what steps change, domains where they `follow` the deformation.
+  void store(Points& points, bool domains_follow) const;
 
   PointsView<float> view();
   std::int64_t bytes() const;

@@ -116,6 +116,7 @@ void Solver::advance(std::int64_t steps) {
     const double dt = time_step();
     step(dt, dt);
   }
+  if (watched_) points();
 }
 
 bool Solver::advance_to(double time, std::int64_t most) {
@@ -127,13 +128,14 @@ bool Solver::advance_to(double time, std::int64_t most) {
       time_ = time;
       time_carry_ = 0.0;
     } else if (k == most) {
-      return false;
+      break;
     } else {
       const bool shorten = method_.time_step.kind == TimeStep::Kind::courant && left < 2.0 * dt;
       step(shorten ? left / std::ceil(left / dt) : dt, dt);
     }
   }
-  return true;
+  if (watched_) points();
+  return time_ >= time;
 }
 
 /// Calls act(kernel, view) for the precision in which the points are stepped.
@@ -187,7 +189,8 @@ void Solver::prepare() {
     watch.lap(&Seconds::sort);
   }
   if (single_ && !single_loaded_) {
-    single_->load(points(), grid_.view());
+    const ShapeTraits& widest = traits(find_shape(method_.shape));
+    single_->load(points(), grid_.view(), 0.5 * widest.widest + widest.behind + kMargin);
     single_loaded_ = true;
   }
   if (!nodes_ready_) {
@@ -421,7 +424,7 @@ std::int64_t Solver::bytes() const {
 
 /// The points as they are now.
 const Points& Solver::points() const {
-  if (single_ahead_) single_->store(points_);
+  if (single_ahead_) single_->store(points_, method_.domain_update != DomainUpdate::none);
   single_ahead_ = false;
   return points_;
 }

@@ -60,6 +60,9 @@ class Solver {
   /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,
   /// body_force, half_length, and deformation_gradient (xx, xy, yx, yy) where the method keeps it.
   FieldView field(const std::string& name);
+
+  /// A field that shows the present state after every call, in single precision too.
+  FieldView watch(const std::string& name);
   std::vector<double> values(const std::string& name);  // in the order the points were given
   void set_values(const std::string& name, std::span<const double> values);
   std::vector<std::int32_t> material_of_points() const;
@@ -111,6 +114,7 @@ class Solver {
   std::unique_ptr<SinglePoints> single_;  // where the points are stepped in single precision
   bool single_loaded_ = false;            // it holds the state of the points,
   mutable bool single_ahead_ = false;     // or a later one
+  bool watched_ = false;                  // which then is given back after every call
   Layout layout_;
   Basis basis_;
   Kernel<double> kernel_{};

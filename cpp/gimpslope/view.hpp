@@ -23,7 +23,8 @@ struct Block {
 };
 constexpr int kBlock = 64;
 
-/// Consecutive blocks whose points start in the same few rows of cells, and these rows of nodes.
+/// Consecutive blocks whose points start in the same few rows of cells, and its share of the rows
+/// of nodes.
 struct Slab {
   std::int32_t begin, end;
   std::int32_t first_row, end_row;

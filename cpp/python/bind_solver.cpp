@@ -92,7 +92,7 @@ void interruptible(Guarded& guarded, std::int64_t steps, Chunk chunk) {
 /// A window onto a field in storage order; it keeps the solver alive.
 py::array window(py::object owner, const std::string& name) {
   auto& solver = owner.cast<Guarded&>().get();
-  const FieldView f = solver.field(name);
+  const FieldView f = solver.watch(name);
   constexpr auto size = static_cast<py::ssize_t>(sizeof(double));
   std::vector<py::ssize_t> shape{solver.size()}, strides{f.point_stride * size};
   if (f.components > 1) {

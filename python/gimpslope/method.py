@@ -49,9 +49,10 @@ class Method(Record):
         (Hughes 1980), against locking where the volume hardly changes, as in undrained clay. Not
         for large elastic motions: a point that crosses into another cell meets another mean stress.
         The mean is over all materials in the cell
-    precision : in which the points are kept: "double", or "single" for scenes too large for the
-        caches; places then count from a node near each point, and the grid and all that is
-        computed on the way stays in double
+    precision : in which the points are stepped: "double", or "single", where places count from a
+        node near each point, and the grid and all that is computed on the way stays in double.
+        Their state is given out in double and kept beside. "single" tells what the digits are
+        worth; it needs a quarter more memory, and measured no faster at any size
     threads : number of threads, >= 1; the result does not depend on it
     allow_unstable : accept a time step above the stable limit
     ledger : keep account of every joule (see `Ledger`); costs speed, changes nothing else

@@ -136,7 +136,7 @@ class Recorder:
         if STAGES[self._stage] == "slide":
             self._snapshot_if_due()
         if clock.monotonic() - self._flushed > _FLUSH_INTERVAL:
-            self._flush()
+            self.flush()
         self._show()
         return row
 
@@ -198,7 +198,8 @@ class Recorder:
                 {name: np.array([r[name] for r in rows]) for name in rows[0]}
             )
 
-    def _flush(self) -> None:
+    def flush(self) -> None:
+        """Write what is kept in memory."""
         self._hand_over_rows()
         self._writer.flush()
         self._flushed = clock.monotonic()

@@ -60,3 +60,48 @@ def test_values_set_are_stepped_on_from() -> None:
 def test_method_names_what_it_takes() -> None:
     with pytest.raises(ValueError, match="precision must be one of 'double', 'single', got 'half'"):
         Method(precision="half")  # type: ignore[arg-type]
+
+
+def test_view_shows_the_present_state() -> None:
+    stepped = solver(sliding(), precision="single")
+    window = stepped.view("position")
+    stepped.advance(30)
+    shown = window.copy()
+    np.testing.assert_array_equal(shown, stepped.get("position")[stepped.numbers()])
+
+
+def test_what_no_step_changes_keeps_its_digits() -> None:
+    scene = block(8, 8, jitter=0.2)
+    scene["body_force"] = np.full((64, 2), 0.1)
+    scene["mass"] = scene["mass"] / 3
+    stepped = solver(scene, precision="single")
+    stepped.advance(10)
+    for name in ("mass", "body_force", "half_length"):
+        np.testing.assert_array_equal(stepped.get(name), scene[name])
+
+
+def test_what_is_done_between_steps_is_stepped_on_from() -> None:
+    """Return of the stresses, kinetic damping, a new clock and the ledger, as in double."""
+    ends = {}
+    for precision in ("double", "single"):
+        stepped = solver(
+            sliding(30, 30) | {"damping": (0.0, True)}, precision=precision, ledger=True
+        )
+        stepped.advance(150)
+        stepped.set("stress", 3.0 * stepped.get("stress"))
+        released = stepped.release_stress()
+        stepped.reset_clock()
+        stepped.set_damping(0.0, False)
+        stepped.advance(100)
+        ledger = stepped.ledger()
+        ends[precision] = np.array(
+            [
+                released,
+                *stepped.energies().values(),
+                ledger["plastic"],
+                ledger["transfer"],
+                stepped.get("plastic_strain").mean(),  # since the clock was reset
+            ]
+        )
+    assert ends["double"][0] > 0.0
+    np.testing.assert_allclose(ends["single"], ends["double"], rtol=2e-3)

@@ -93,6 +93,7 @@ struct Usf {
     Change change;
     gather_change(view, n, weights, change);
     move_points(view, begin, n, input.alpha, change, report);
+    if (report.lost >= 0) return;
     if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
     if (report.lost >= 0) return;
     evaluate<Shape, kOwnDomain>(view, begin, n, weights);

@@ -56,8 +56,9 @@ void averaged_stress_block(const View<Real>& view, const StepInput& input, const
   deform_block(view, input, block, gradient, ledger);
   for (int k = 0; k < n; ++k) {
     const double volume = p.volume[begin + k];
+    const double xx = p.stress_xx[begin + k], yy = p.stress_yy[begin + k];
     double* cell = cell_of(view, begin, k);
-    cell[2] += 0.5 * volume * (p.stress_xx[begin + k] + p.stress_yy[begin + k]);
+    cell[2] += 0.5 * volume * (xx + yy);
     cell[3] += volume;
   }
 }

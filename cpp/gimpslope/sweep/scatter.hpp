@@ -66,9 +66,10 @@ void scatter_momentum(const View<Real>& view, int begin, int n,
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
+    const double m = mass[k];
     nodes.add(
-        Quad{mass[k], mass[k], mass[k] * vx[k], mass[k] * vy[k]},
-        [&](int i) { return weights.value_x(i, k); }, [&](int j) { return weights.value_y(j, k); });
+        Quad{m, m, m * vx[k], m * vy[k]}, [&](int i) { return weights.value_x(i, k); },
+        [&](int j) { return weights.value_y(j, k); });
   }
 }
 
@@ -83,8 +84,8 @@ void scatter_body_forces(const View<Real>& view, int begin, int n,
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
     nodes.add(
-        mass[k] * Quad{bx[k], by[k], 0.0, 0.0}, [&](int i) { return weights.value_x(i, k); },
-        [&](int j) { return weights.value_y(j, k); });
+        static_cast<double>(mass[k]) * Quad{bx[k], by[k], 0.0, 0.0},
+        [&](int i) { return weights.value_x(i, k); }, [&](int j) { return weights.value_y(j, k); });
   }
 }
 

@@ -29,7 +29,8 @@ void add_speeds(const View<Real>& view, const Block& block, Speeds& largest) {
   double point = 0.0, most = 0.0, least = mass[0];
 #pragma omp simd reduction(max : point, most) reduction(min : least)
   for (int k = 0; k < n; ++k) {
-    const double square = vx[k] * vx[k] + vy[k] * vy[k];
+    const double x = vx[k], y = vy[k];
+    const double square = x * x + y * y;
     point = square > point ? square : point;
     most = volume[k] > most ? volume[k] : most;
     least = mass[k] < least ? mass[k] : least;

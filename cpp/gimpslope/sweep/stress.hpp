@@ -12,7 +12,7 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// What the short loops over a block hand to each other.
+/// Strain increments and rotations of the points of a block.
 struct Strains {
   alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
   double turn[kBlock], cosine[kBlock], sine[kBlock];  // of twice the angle

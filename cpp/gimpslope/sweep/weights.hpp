@@ -55,7 +55,7 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
   const Real* lx = kOwnDomain ? view.points.half_length[0] + begin : nullptr;
   const Real* ly = kOwnDomain ? view.points.half_length[1] + begin : nullptr;
   const double per_cell = 1.0 / grid.cell;
-  const std::int32_t* home = view.points.home + begin;
+  const std::int32_t* home = PointsView<Real>::relative ? view.points.home + begin : nullptr;
   const double left = PointsView<Real>::relative ? 0.0 : grid.left;
   const double bottom = PointsView<Real>::relative ? 0.0 : grid.bottom;
   const double stride = grid.stride;

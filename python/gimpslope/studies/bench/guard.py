@@ -33,7 +33,7 @@ def failures(ratios: Mapping[int, float]) -> list[str]:
     """A sentence for each number of threads on which the kernel is too slow."""
     return [
         f"the kernel is too slow on {_threads(n)}: {ratio:.2f} times the plain loop, "
-        f"but it must be at least {LIMITS[n]:g} times"
+        f"but it must be at least {LIMITS[n]:g} times on a machine that does nothing else"
         for n, ratio in ratios.items()
         if not ratio >= LIMITS[n]
     ]

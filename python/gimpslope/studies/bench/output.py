@@ -67,13 +67,20 @@ def _pass(case: Case) -> OutputCost:
             snapshot_interval=DURATION / SNAPSHOTS,
             progress=False,
         )
+        before = solver.seconds
         with recorder:
-            taken = in_turn.seconds(lambda _: simulation.slide(recorder), 1)
+
+            def slide(_: int) -> None:
+                simulation.slide(recorder)
+                recorder.flush()
+
+            taken = in_turn.seconds(slide, 1)
+            written = len(Run(recorder.path).times)
         run = Run(recorder.path)
-        snapshots, rows = len(run.times), len(run.energy)
+        snapshots, rows = written, len(run.energy)
         stepping = float(run.attributes["timing"]["wall_seconds"])
     bare = in_turn.seconds(Solver.of(scene, case.method()).advance, solver.steps)
-    spent = solver.seconds
+    spent = {part: seconds - before[part] for part, seconds in solver.seconds.items()}
     spent |= {"output": taken - stepping, "rest": stepping - sum(spent.values())}
     return OutputCost(
         points=len(solver),

@@ -22,7 +22,10 @@ _VARIANTS: tuple[dict[str, object], ...] = (
 
 def all_threads() -> int:
     """Threads that run side by side: one a processor, or one in all in a build without threads."""
-    return (os.cpu_count() or 1) if kernel.has_threads() else 1
+    if not kernel.has_threads():
+        return 1
+    allowed = getattr(os, "sched_getaffinity", None)  # not on every system
+    return len(allowed(0)) if allowed else os.cpu_count() or 1
 
 
 @dataclass(frozen=True)

@@ -153,7 +153,7 @@ def _study(time: StudyTime) -> str:
     )
     return (
         f"extrapolated to the paper's own step of {1e3 * study.TIME_STEP:g} ms, {study.STEPS:,} "
-        f"steps a slope: one slope {one};\n"
+        f"steps a slope, soil alone and without output: one slope {one};\n"
         f"{study.SLOPES} slopes on {time.cores} core{'s' if time.cores > 1 else ''} "
         f"{_minutes(time.study)}, {way}"
     )
