@@ -33,7 +33,8 @@ def changed(text: str, diff: str) -> str:
     return text
 
 
-def run(*command: str | Path, **variables: str) -> None:
+def run(*command: str | Path, **variables: str) -> str:
+    """What a command shows; it must succeed."""
     done = subprocess.run(
         command,
         env=os.environ | variables,
@@ -42,6 +43,7 @@ def run(*command: str | Path, **variables: str) -> None:
         stderr=subprocess.STDOUT,
     )
     assert done.returncode == 0, done.stdout
+    return done.stdout
 
 
 def install(source: Path, build: Path, site: Path) -> None:
@@ -72,4 +74,6 @@ def test_shape_function_of_contributing(tmp_path: Path) -> None:
     install(source, tmp_path / "build", site)
     # Without site, so that no editable installation comes before this one.
     paths = os.pathsep.join([str(site), *sys.path])
-    run(sys.executable, "-S", "-m", "pytest", "-p", "no:cacheprovider", CHECKS, PYTHONPATH=paths)
+    pytest_run = [sys.executable, "-S", "-m", "pytest", "-p", "no:cacheprovider", CHECKS]
+    shown = run(*pytest_run, PYTHONPATH=paths)
+    assert re.search(r"=+ 8 passed in [^,]*=+$", shown, re.MULTILINE), shown  # none left out

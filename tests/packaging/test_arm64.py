@@ -12,7 +12,10 @@ COMPILER = "aarch64-linux-gnu-g++"
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(shutil.which(COMPILER) is None, reason=f"{COMPILER} is not installed"),
+    pytest.mark.skipif(
+        shutil.which(COMPILER) is None,
+        reason=f"needs the cross compiler {COMPILER} (Debian: g++-aarch64-linux-gnu)",
+    ),
 ]
 
 
@@ -35,7 +38,7 @@ def test_compiles_without_warnings(arm64: Path) -> None:
 def test_same_but_for_rounding(arm64: Path, native_slide: Path) -> None:
     emulator = shutil.which("qemu-aarch64-static") or shutil.which("qemu-aarch64")
     if emulator is None:
-        pytest.skip("qemu-aarch64, of the package qemu-user, is not installed")
+        pytest.skip("needs an emulator of arm64, qemu-aarch64 (Debian: qemu-user-static)")
     found = slide(emulator, compile_slide(arm64, COMPILER, "-static"))
     assert found.instruction_set == "generic"
     assert_same_but_for_rounding(found, slide(native_slide, instruction_set="generic"))

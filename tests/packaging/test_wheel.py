@@ -19,7 +19,10 @@ from package_build import ROOT, assert_same_but_for_rounding, slide
 
 pytestmark = [
     pytest.mark.slow,
-    pytest.mark.skipif(platform.system() != "Linux", reason="reads objects with GNU binutils"),
+    pytest.mark.skipif(
+        platform.system() != "Linux",
+        reason="reads ELF objects with GNU binutils, which other systems do not have",
+    ),
 ]
 x86_64 = pytest.mark.skipif(
     platform.machine() != "x86_64", reason="only x86-64 has instruction sets to choose from"
@@ -118,7 +121,7 @@ def test_instruction_sets_share_no_code(alone: Path) -> None:
 def test_choice_at_run_time(native_slide: Path, processor: str, chosen: str) -> None:
     emulator = shutil.which("qemu-x86_64-static") or shutil.which("qemu-x86_64")
     if emulator is None:
-        pytest.skip("qemu-x86_64, of the package qemu-user, is not installed")
+        pytest.skip("needs an emulator of older processors, qemu-x86_64 (Debian: qemu-user-static)")
     found = slide(emulator, "-cpu", processor, native_slide)
     assert found.instruction_set == chosen
     assert_same_but_for_rounding(found, slide(native_slide, instruction_set="generic"))

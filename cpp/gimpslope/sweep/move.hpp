@@ -7,6 +7,7 @@
 #include "../domain.hpp"
 #include "../travel.hpp"
 #include "accounts.hpp"
+#include "gather.hpp"
 #include "scatter.hpp"
 #include "weights.hpp"
 
@@ -22,17 +23,10 @@ struct Change {
 template <class Shape, class Real>
 void gather_change(const View<Real>& view, int n, const Weights<Shape, Need::values>& weights,
                    Change& change) {
-  const double* update = view.grid.update;
-  const int stride = view.grid.stride;
   for (int k = 0; k < n; ++k) {
-    const double* first = update + 4 * weights.first[k];
-    Quad sum{};
-    for (int j = 0; j < Shape::nodes; ++j) {
-      const double* row = first + 4 * j * stride;
-      Quad along = quad(row) * weights.value_x(0, k);
-      for (int i = 1; i < Shape::nodes; ++i) along += quad(row + 4 * i) * weights.value_x(i, k);
-      sum += along * weights.value_y(j, k);
-    }
+    const Quad sum = gather<Shape>(
+        view.grid.update + 4 * weights.first[k], view.grid.stride,
+        [&](int i) { return weights.value_x(i, k); }, [&](int j) { return weights.value_y(j, k); });
     change.x[k] = sum[0];
     change.y[k] = sum[1];
     change.vx[k] = sum[2];

@@ -6,6 +6,7 @@
 #include "../material/material.hpp"
 #include "../rotation.hpp"
 #include "accounts.hpp"
+#include "gather.hpp"
 #include "scatter.hpp"
 #include "weights.hpp"
 
@@ -27,19 +28,11 @@ struct Gradient {
 template <class Shape, class Real>
 void gather_gradient(const View<Real>& view, int n, const Weights<Shape, Need::gradients>& weights,
                      Gradient& gradient) {
-  const double* velocity = view.grid.velocity;
-  const int stride = view.grid.stride;
   for (int k = 0; k < n; ++k) {
-    Quad x[Shape::nodes];
-    for (int i = 0; i < Shape::nodes; ++i) x[i] = twice(weights.pair_x(i, k));
-    const double* first = velocity + 4 * weights.first[k];
-    Quad sum{};
-    for (int j = 0; j < Shape::nodes; ++j) {
-      const double* row = first + 4 * j * stride;
-      Quad along = x[0] * quad(row);
-      for (int i = 1; i < Shape::nodes; ++i) along += x[i] * quad(row + 4 * i);
-      sum += along * twice(weights.pair_y(j, k));
-    }
+    const Quad sum = gather<Shape>(
+        view.grid.velocity + 4 * weights.first[k], view.grid.stride,
+        [&](int i) { return twice(weights.pair_x(i, k)); },
+        [&](int j) { return twice(weights.pair_y(j, k)); });
     gradient.vx_x[k] = sum[0];
     gradient.vx_y[k] = sum[1];
     gradient.vy_x[k] = sum[2];
