@@ -7,6 +7,7 @@
 #include "error.hpp"
 #include "shape/traits.hpp"
 #include "solver.hpp"
+#include "sweep/loops.hpp"
 
 namespace gimpslope {
 namespace {
@@ -23,7 +24,15 @@ Stress stress_of(const Points& p, int k) {
 }  // namespace
 
 Energies Solver::energies() {
-  kernel_.measure_energies(view_of(points().view()), gravity_.x, gravity_.y, reports_.data());
+  if (!energies_known_) {
+    kernel_.measure_energies(view_of(points().view()), gravity_.x, gravity_.y, reports_.data());
+    energies_ = gather_energies();
+    energies_known_ = true;
+  }
+  return energies_;
+}
+
+Energies Solver::gather_energies() const {
   Energies sum;
   for (const Report& report : reports_) {
     sum.kinetic += report.energies.kinetic;
@@ -57,7 +66,7 @@ double Solver::release_stress() {
     p.stress[3][k] = after.xy;
     released += p.volume[0][k] * (strain_energy(law, before) - strain_energy(law, after));
   }
-  single_loaded_ = false;
+  single_loaded_ = energies_known_ = false;
   ledger_.plastic += released;
   return released;
 }
@@ -106,20 +115,29 @@ void Solver::keep_body_forces() {
   sorted_ = false;
 }
 
-std::vector<double> Solver::values(const std::string& name) {
-  if (name == "body_force" && points().body_force.empty())
-    return std::vector<double>(2 * static_cast<std::size_t>(size()), 0.0);
-  const FieldView f = field(name);
-  std::vector<double> result(static_cast<std::size_t>(f.components) * size());
-  for (int c = 0; c < f.components; ++c) {
-    const double* component = f.data + c * f.component_stride;
-    double* given = result.data() + c;
-    for (int k = 0; k < size(); ++k)
-      given[static_cast<std::ptrdiff_t>(f.components) * points_.number[k]] =
-          component[k * f.point_stride];
+template <class Out>
+void Solver::copy_values(const std::string& name, std::span<Out> given) {
+  if (name == "body_force" && points().body_force.empty()) {
+    std::fill(given.begin(), given.end(), Out{});
+    return;
   }
-  return result;
+  const FieldView f = field(name);
+  const std::int32_t* number = points_.number.data();
+  together(*team_, [&](int thread) {
+    const std::int64_t n = size();
+    const auto begin = n * thread / threads(), end = n * (thread + 1) / threads();
+    for (int c = 0; c < f.components; ++c) {
+      const double* component = f.data + c * f.component_stride;
+      Out* out = given.data() + c;
+      for (std::int64_t k = begin; k < end; ++k)
+        out[std::ptrdiff_t{f.components} * number[k]] =
+            static_cast<Out>(component[k * f.point_stride]);
+    }
+  });
 }
+
+template void Solver::copy_values(const std::string& name, std::span<double> given);
+template void Solver::copy_values(const std::string& name, std::span<float> given);
 
 void Solver::set_values(const std::string& name, std::span<const double> values) {
   const bool settable = name == "position" || name == "velocity" || name == "stress" ||
@@ -138,7 +156,7 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
-  single_loaded_ = false;
+  single_loaded_ = energies_known_ = false;
   if (name != "body_force") nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;
 }

@@ -131,11 +131,23 @@ bool Solver::advance_to(double time, std::int64_t most) {
       break;
     } else {
       const bool shorten = method_.time_step.kind == TimeStep::Kind::courant && left < 2.0 * dt;
-      step(shorten ? left / std::ceil(left / dt) : dt, dt);
+      const double share = shorten ? left / std::ceil(left / dt) : dt;
+      step(share, dt, time_ + share >= time - rounding * dt);
     }
   }
   if (watched_) points();
   return time_ >= time;
+}
+
+bool Solver::advance_through(std::span<const double> times, std::int64_t most,
+                             std::vector<Row>& rows) {
+  const std::int64_t last = steps_ + most;
+  for (const double time : times) {
+    if (time <= time_) continue;
+    if (!advance_to(time, last - steps_)) return false;
+    rows.push_back({time_, steps_, energies(), ledger_});
+  }
+  return true;
 }
 
 /// Calls act(kernel, view) for the precision in which the points are stepped.
@@ -202,16 +214,24 @@ void Solver::prepare() {
 
 /// A step of dt, which may be shorter than the `whole` one: its PIC share is less in proportion, so
 /// that the times at which a run is looked at do not change how it is damped.
-void Solver::step(double dt, double whole) {
+void Solver::step(double dt, double whole, bool wants_energies) {
   if (!failure_.empty()) throw Diverged(failure_, steps_ + 1, time_, -1);
   prepare();
+  energies_known_ = false;
   const double share = alpha_of(whole) * (dt / whole);
   if (!(share <= 1.0))
     fail("the step of " + text(dt) + " s is too long for the velocity blend", -1);
   const double factor = gravity_.factor(time_ + dt);
   const bool courant = method_.time_step.kind == TimeStep::Kind::courant;
-  const StepInput input{dt,         share,      gravity_.x * factor, gravity_.y * factor,
-                        gravity_.x, gravity_.y, damping_.local,      courant};
+  const StepInput input{dt,
+                        share,
+                        gravity_.x * factor,
+                        gravity_.y * factor,
+                        gravity_.x,
+                        gravity_.y,
+                        damping_.local,
+                        courant,
+                        wants_energies};
   with_kernel(
       [&](const auto& kernel, const auto& view) { kernel.step(view, input, reports_.data()); });
   single_ahead_ = single_ != nullptr;
@@ -226,6 +246,10 @@ void Solver::step(double dt, double whole) {
   if (method_.ledger) {
     for (const Report& report : reports_) add(report.ledger, ledger_);
     for (const Ledger& row : ledger_rows_) add(row, ledger_);
+  }
+  if (wants_energies && !single_) {
+    energies_ = gather_energies();
+    energies_known_ = true;
   }
   speeds_known_ = false;
   if (courant) gather_speeds();
@@ -298,7 +322,7 @@ void Solver::damp_at_peak() {
   single_loaded_ = false;
   ledger_.damping += kinetic;
   last_kinetic_ = 0.0;
-  nodes_ready_ = speeds_known_ = false;
+  nodes_ready_ = speeds_known_ = energies_known_ = false;
 }
 
 void Solver::set_gravity(const Gravity& gravity) {
@@ -307,6 +331,7 @@ void Solver::set_gravity(const Gravity& gravity) {
   require(gravity.ramp >= 0.0 && std::isfinite(gravity.ramp), "ramp", gravity.ramp,
           "zero or positive and finite, in s");
   gravity_ = gravity;
+  energies_known_ = false;
 }
 
 void Solver::set_damping(const Damping& damping) {
@@ -346,7 +371,7 @@ void Solver::set_materials(std::vector<Material> materials) {
   if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);
   materials_ = std::move(materials);
-  speeds_known_ = false;
+  speeds_known_ = energies_known_ = false;
 }
 
 void Solver::reset_clock() {

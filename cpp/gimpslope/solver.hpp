@@ -30,6 +30,14 @@ struct FieldView {
   int components;
 };
 
+/// Energies and ledger at one time.
+struct Row {
+  double time;
+  std::int64_t steps;
+  Energies energies;
+  Ledger ledger;
+};
+
 class Solver {
  public:
   Solver(const InitialPoints& points, std::vector<Material> materials, double cell,
@@ -42,6 +50,10 @@ class Solver {
   /// Steps until `time`, at most `most` steps; with a Courant number the last two are shortened to
   /// end there. True when the time is reached.
   bool advance_to(double time, std::int64_t most);
+
+  /// Steps to each of the times in turn, which grow, at most `most` steps in all, and adds a row
+  /// for each; times that are not ahead have none. True when the last time is reached.
+  bool advance_through(std::span<const double> times, std::int64_t most, std::vector<Row>& rows);
 
   void set_gravity(const Gravity& gravity);
   void set_damping(const Damping& damping);
@@ -63,7 +75,10 @@ class Solver {
 
   /// A field that shows the present state after every call, in single precision too.
   FieldView watch(const std::string& name);
-  std::vector<double> values(const std::string& name);  // in the order the points were given
+
+  /// A field of `components` components a point, in the order the points were given.
+  template <class Out>
+  void copy_values(const std::string& name, std::span<Out> given);
   void set_values(const std::string& name, std::span<const double> values);
   std::vector<std::int32_t> material_of_points() const;
   std::span<const std::int32_t> numbers() const { return points_.number; }
@@ -73,6 +88,7 @@ class Solver {
   int size() const { return points_.size; }
   double cell() const { return grid_.cell(); }
   int threads() const { return method_.threads; }
+  bool keeps_ledger() const { return method_.ledger; }
   InstructionSet instruction_set() const { return instruction_set_; }
   double time_step();                                                          // the next one, s
   double stable_time_step() const { return stable_time_step_of(materials_); }  // at present, s
@@ -90,7 +106,7 @@ class Solver {
   Points& points();
   const Points& points() const;
   void prepare();
-  void step(double dt, double whole);
+  void step(double dt, double whole, bool wants_energies = false);
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
   [[noreturn]] void fail_at(int lost, double dt);
   void follow_width(double width);
@@ -102,6 +118,7 @@ class Solver {
   void check_alpha(double dt) const;
   double kinetic_energy() const;
   void gather_speeds();
+  Energies gather_energies() const;
   int fastest_point() const;
 
   Method method_;
@@ -127,6 +144,8 @@ class Solver {
   Seconds seconds_;
   Speeds speeds_;  // the largest of all points
   bool speeds_known_ = false;
+  Energies energies_;  // of the last step that was asked for them
+  bool energies_known_ = false;
   double half_length_ = 0.0;  // of all points where they are alike, otherwise their mean, m
   double width_ = 0.0;        // of the widest domain, cells
   double time_ = 0.0;

@@ -97,7 +97,7 @@ struct StepInput {
   double gravity_x, gravity_y;            // that acts
   double full_gravity_x, full_gravity_y;  // at the end of its ramp
   double local_damping;
-  bool wants_speeds;
+  bool wants_speeds, wants_energies;
 };
 
 /// Largest squared speed, and largest squared wave speed.
@@ -105,10 +105,11 @@ struct Speeds {
   double point = 0.0, wave = 0.0;
 };
 
-/// Energies in J per metre of thickness; the potential is zero at the origin of the coordinates.
+/// Energies in J per metre of thickness; the potential is zero at the origin of the coordinates,
+/// under full gravity.
 struct Energies {
   double kinetic = 0.0, potential = 0.0, elastic = 0.0;
-  double max_speed = 0.0;  // m/s
+  double max_speed = 0.0;  // m/s; in the report of a slab its square
 };
 
 /// What a slab reports of a step. Maxima do not depend on the order of the slabs.

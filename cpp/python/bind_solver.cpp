@@ -15,6 +15,7 @@ namespace {
 /// A solver that one thread at a time may use: stepping goes on without the interpreter's lock.
 struct Guarded {
   Solver solver;
+  std::vector<Row> rows;  // since they were last taken
   bool stepping = false;
 
   Solver& get() {
@@ -57,7 +58,49 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
   const GivenPoints given(position, velocity, half_length, mass, volume, material);
   return std::unique_ptr<Guarded>(
       new Guarded{Solver(given.points, std::move(materials), cell, origin, walls_of(walls), method,
-                         instruction_set_of(instruction_set))});
+                         instruction_set_of(instruction_set)),
+                  {}});
+}
+
+constexpr std::pair<const char*, double Energies::*> kEnergies[] = {
+    {"kinetic", &Energies::kinetic},
+    {"potential", &Energies::potential},
+    {"elastic", &Energies::elastic},
+    {"max_speed", &Energies::max_speed}};
+
+constexpr std::pair<const char*, double Ledger::*> kLedger[] = {
+    {"plastic", &Ledger::plastic},         {"friction", &Ledger::friction},
+    {"impact", &Ledger::impact},           {"damping", &Ledger::damping},
+    {"transfer", &Ledger::transfer},       {"external", &Ledger::external},
+    {"hypoelastic", &Ledger::hypoelastic}, {"integration", &Ledger::integration}};
+
+/// The members of a struct by their names.
+template <class Struct, std::size_t count>
+py::dict by_name(const Struct& values,
+                 const std::pair<const char*, double Struct::*> (&names)[count]) {
+  py::dict result;
+  for (const auto& [name, member] : names) result[name] = values.*member;
+  return result;
+}
+
+/// One array a column.
+py::dict take_rows(Guarded& guarded) {
+  const bool ledger = guarded.get().keeps_ledger();
+  const std::vector<Row> rows = std::exchange(guarded.rows, {});
+  const auto column = [&](auto value) {
+    py::array_t<decltype(value(Row{}))> values(static_cast<py::ssize_t>(rows.size()));
+    std::transform(rows.begin(), rows.end(), values.mutable_data(), value);
+    return values;
+  };
+  py::dict result;
+  result["time"] = column([](const Row& row) { return row.time; });
+  result["step"] = column([](const Row& row) { return row.steps; });
+  for (const auto& [name, member] : kEnergies)
+    result[name] = column([member = member](const Row& row) { return row.energies.*member; });
+  if (!ledger) return result;
+  for (const auto& [name, member] : kLedger)
+    result[name] = column([member = member](const Row& row) { return row.ledger.*member; });
+  return result;
 }
 
 /// Runs chunk(solver, steps) -> finished without the interpreter's lock, in pieces of about a
@@ -104,13 +147,16 @@ py::array window(py::object owner, const std::string& name) {
   return array;
 }
 
-py::array_t<double> values(Guarded& guarded, const std::string& name) {
+template <class Out>
+py::array_t<Out> values(Guarded& guarded, const std::string& name) {
   Solver& solver = guarded.get();
-  const std::vector<double> found = solver.values(name);
   std::vector<py::ssize_t> shape{solver.size()};
-  const auto components = static_cast<py::ssize_t>(found.size()) / shape[0];
-  if (components > 1) shape.push_back(components);
-  return py::array_t<double>(shape, found.data());
+  if (const int components = solver.field(name).components; components > 1)
+    shape.push_back(components);
+  py::array_t<Out> result(shape);
+  solver.copy_values(name,
+                     std::span(result.mutable_data(), static_cast<std::size_t>(result.size())));
+  return result;
 }
 
 }  // namespace
@@ -164,6 +210,16 @@ void bind_solver(py::module_& m) {
           },
           py::arg("time"))
       .def(
+          "advance_through",
+          [](Guarded& s, const Doubles& times) {
+            const std::span<const double> wanted = values_of(times, "times", rows_of(times), 1);
+            interruptible(s, INT64_MAX, [&](Solver& solver, std::int64_t now) {
+              return solver.advance_through(wanted, now, s.rows);
+            });
+          },
+          py::arg("times"))
+      .def("take_rows", &take_rows)
+      .def(
           "set_gravity",
           [](Guarded& s, double x, double y, double ramp) { s.get().set_gravity({x, y, ramp}); },
           py::arg("x"), py::arg("y"), py::arg("ramp") = 0.0)
@@ -183,31 +239,10 @@ void bind_solver(py::module_& m) {
           py::arg("materials"))
       .def("release_stress", read(&Solver::release_stress))
       .def("reset_clock", read(&Solver::reset_clock))
-      .def("energies",
-           [](Guarded& s) {
-             const Energies e = s.get().energies();
-             py::dict result;
-             result["kinetic"] = e.kinetic;
-             result["potential"] = e.potential;
-             result["elastic"] = e.elastic;
-             result["max_speed"] = e.max_speed;
-             return result;
-           })
-      .def("ledger",
-           [](Guarded& s) {
-             const Ledger found = s.get().ledger();
-             py::dict result;
-             result["plastic"] = found.plastic;
-             result["friction"] = found.friction;
-             result["impact"] = found.impact;
-             result["damping"] = found.damping;
-             result["transfer"] = found.transfer;
-             result["external"] = found.external;
-             result["hypoelastic"] = found.hypoelastic;
-             result["integration"] = found.integration;
-             return result;
-           })
-      .def("get", &values, py::arg("name"))
+      .def("energies", [](Guarded& s) { return by_name(s.get().energies(), kEnergies); })
+      .def("ledger", [](Guarded& s) { return by_name(s.get().ledger(), kLedger); })
+      .def("get", &values<double>, py::arg("name"))
+      .def("get_single", &values<float>, py::arg("name"))
       .def(
           "set",
           [](Guarded& s, const std::string& name, const Doubles& given) {

@@ -14,7 +14,7 @@ Angles are in degrees, everything else in SI units.
 
 from importlib.metadata import version
 
-from . import kernel
+from . import kernel, stones
 from .ledger import Ledger
 from .materials import DruckerPrager, Elastic, Material
 from .method import Method
@@ -24,6 +24,7 @@ from .scene import Points, Scene
 from .simulation import NotSettledError, simulate
 from .solver import Diverged, Energies, Solver
 from .stages import Gravity, Settling, Slide, Stages
+from .stones import Ellipse, Stone, Stones
 from .walls import Coulomb, Fixed, Free, Roller, Walls
 
 __version__ = version("gimpslope")
@@ -33,6 +34,7 @@ __all__ = [
     "Diverged",
     "DruckerPrager",
     "Elastic",
+    "Ellipse",
     "Energies",
     "Fixed",
     "Free",
@@ -50,8 +52,11 @@ __all__ = [
     "Slide",
     "Solver",
     "Stages",
+    "Stone",
+    "Stones",
     "Walls",
     "kernel",
     "open",
     "simulate",
+    "stones",
 ]

@@ -117,6 +117,23 @@ def array(name: str, value: object, shape: tuple[int | str, ...]) -> FloatArray:
     return copy
 
 
+def numbers(name: str, value: object, n: int, low: int, high: int) -> npt.NDArray[np.int32]:
+    """A read-only copy of `n` whole numbers between `low` and `high`, both included."""
+    given = np.asarray(value)
+    if given.shape != (n,) or given.dtype.kind not in "iu":
+        raise TypeError(
+            f"{name} must be an array of whole numbers of shape ({n},), "
+            f"got {given.dtype} of shape {given.shape}"
+        )
+    if n and not low <= given.min() <= given.max() <= high:
+        raise ValueError(
+            f"{name} must be numbers in [{low}, {high}], got {given.min()} to {given.max()}"
+        )
+    copy = np.array(given, dtype=np.int32)
+    copy.setflags(write=False)
+    return copy
+
+
 def _refusal(name: str, value: object, allowed: str) -> str:
     plain = value.item() if isinstance(value, np.generic) else value
     shown = str(plain) if isinstance(plain, int | float) else reprlib.repr(plain)

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import time as clock
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Mapping
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
@@ -18,7 +17,7 @@ from tqdm import tqdm
 from . import _check
 from ._check import FloatArray
 from .io.atomic import uninterrupted
-from .io.hdf5 import FIELDS, STAGES, RunWriter
+from .io.hdf5 import FIELDS, SNAPSHOT_FIELDS, STAGES, Quantity, RunWriter
 from .run import Run
 from .solver import Diverged
 from .summary import summarise
@@ -29,6 +28,8 @@ if TYPE_CHECKING:
 ENERGY_INTERVAL = 0.005  # s
 SNAPSHOT_INTERVAL = 0.2  # s
 _FLUSH_INTERVAL = 1.0  # s of wall time
+_MOMENT = 0.05  # s of wall time
+_LARGEST_BATCH = 1024  # rows
 _BAR = "{desc} {percentage:3.0f}%|{bar}| {n:.2f} of {total:.2f} s [{elapsed}<{remaining}{postfix}]"
 _OPEN_BAR = "{desc} {n:.2f} s, at most {total:.0f} s [{elapsed}{postfix}]"
 
@@ -60,7 +61,7 @@ class Recorder:
         )
         self._stage = 0
         self._bar: tqdm[Any] | None = None
-        self._rows: list[dict[str, float]] = []
+        self._batch = 1
         self._rows_end = 0
         self._stage_start = 0.0
         self._intervals = 0
@@ -117,28 +118,28 @@ class Recorder:
         if stage == "slide":
             self._snapshot_if_due()
 
-    def next_time(self) -> float:
-        """When the next row, or snapshot of the slide, is due, s."""
-        due = self._next_row()
-        if STAGES[self._stage] == "slide" and self._snapshot_times:
-            due = min(due, self._snapshot_times[0])
-        return due
-
-    def advance(self, until: float) -> dict[str, float]:
-        """Step to the time `until` and record what is due; the energies then."""
-        steps = self._solver.steps
-        with self._timed():
-            try:
-                self._solver.advance_to(until)
-            finally:
-                self._steps += self._solver.steps - steps
-        row = self._row()
+    def advance(self, until: float, *, rows: int | None = None) -> dict[str, float]:
+        """Step on towards the time `until` and record what is due on the way: at most `rows` rows,
+        or where left out as many as fit in a moment of wall time. The last row."""
+        steps, start = self._solver.steps, clock.perf_counter()
+        try:
+            self._solver.advance_through(self._due(until, rows or self._batch))
+        finally:
+            spent = clock.perf_counter() - start
+            self._seconds += spent
+            self._steps += self._solver.steps - steps
+            columns = self._solver.take_rows()
+            self._keep(columns)
+        if spent < _MOMENT:
+            self._batch = min(2 * self._batch, _LARGEST_BATCH)
+        elif spent > 4 * _MOMENT:
+            self._batch = max(self._batch // 2, 1)
         if STAGES[self._stage] == "slide":
             self._snapshot_if_due()
         if clock.monotonic() - self._flushed > _FLUSH_INTERVAL:
             self.flush()
         self._show()
-        return row
+        return {name: column[-1] for name, column in columns.items()}
 
     def release(self, energy: float, settling_time: float, settling_ratio: float) -> None:
         """Record the trigger: the points now are the reference of all displacements."""
@@ -147,25 +148,32 @@ class Recorder:
             energy_released=energy, settling_time=settling_time, settling_ratio=settling_ratio
         )
 
-    def _row(self) -> dict[str, float]:
-        energies = self._solver.energies()
-        keeps_ledger = self._simulation.method.ledger
-        row = {
-            "stage": self._stage,
-            "time": self._solver.time,
-            "step": self._solver.steps,
-            **energies._asdict(),
-            **(self._solver.ledger._asdict() if keeps_ledger else {}),
-        }
-        self._rows.append(row)
-        self._rows_end = self._solver.steps
-        while self._next_row() <= self._solver.time:
-            self._intervals += 1
-        return row
+    def _row(self) -> None:
+        """A row of the present state."""
+        solver = self._solver
+        ledger = solver.ledger._asdict() if self._simulation.method.ledger else {}
+        row = {"time": solver.time, "step": solver.steps, **solver.energies()._asdict(), **ledger}
+        self._keep({name: np.array([value]) for name, value in row.items()})
 
-    def _next_row(self) -> float:
+    def _keep(self, rows: dict[str, npt.NDArray[Any]]) -> None:
+        if len(rows["step"]) == 0:
+            return
+        self._writer.append_energy({"stage": np.full(len(rows["step"]), self._stage), **rows})
+        self._rows_end = rows["step"][-1]
+        while self._row_time(self._intervals + 1) <= self._solver.time:
+            self._intervals += 1
+
+    def _row_time(self, interval: int) -> float:
         """Counted in intervals: times that are summed up drift."""
-        return round(self._stage_start + (self._intervals + 1) * self._interval, 12)
+        return round(self._stage_start + interval * self._interval, 12)
+
+    def _due(self, until: float, rows: int) -> list[float]:
+        """Times of the next rows, the last one `until` or that of a snapshot if such is near."""
+        if STAGES[self._stage] == "slide" and self._snapshot_times:
+            until = min(until, self._snapshot_times[0])
+        first = self._intervals + 1
+        times = [self._row_time(interval) for interval in range(first, first + rows)]
+        return times if times[-1] < until else [*(time for time in times if time < until), until]
 
     def _snapshot_if_due(self) -> None:
         due = False
@@ -173,14 +181,16 @@ class Recorder:
             self._snapshot_times.pop(0)
             due = True
         if due:
-            self._writer.append_snapshot(self._solver.time, self._fields())
+            self._writer.append_snapshot(self._solver.time, self._fields(SNAPSHOT_FIELDS))
 
-    def _fields(self) -> dict[str, Any]:
-        return {name: getattr(self._solver, name) for name in FIELDS}
+    def _fields(self, quantities: Mapping[str, Quantity]) -> dict[str, Any]:
+        return {
+            name: self._solver.values(name, single=quantity.dtype == "f4")
+            for name, quantity in quantities.items()
+        }
 
     def _write_points(self) -> None:
         solver, scene = self._solver, self._simulation.scene
-        names = ["soil", "stone"][: len(scene.materials)]
         has_domains = self._simulation.method.has_domains
         self._writer.write_points(
             solver.position,
@@ -188,19 +198,12 @@ class Recorder:
             solver.volume,
             solver.half_length if has_domains else scene.points.half_length,
             solver.material,
-            names,
+            scene.points.stone,
+            scene.material_names,
         )
-
-    def _hand_over_rows(self) -> None:
-        if self._rows:
-            rows, self._rows = self._rows, []
-            self._writer.append_energy(
-                {name: np.array([r[name] for r in rows]) for name in rows[0]}
-            )
 
     def flush(self) -> None:
         """Write what is kept in memory."""
-        self._hand_over_rows()
         self._writer.flush()
         self._flushed = clock.monotonic()
 
@@ -208,9 +211,8 @@ class Recorder:
         """Write the end; of a state that is not sound, torn in the middle of a step, nothing."""
         if sound and self._solver.steps > self._rows_end:
             self._row()
-        self._hand_over_rows()
         if sound and STAGES[self._stage] == "slide":
-            self._writer.write_final(self._solver.time, self._fields())
+            self._writer.write_final(self._solver.time, self._fields(FIELDS))
         self._writer.write_timing(self._seconds, self._steps * len(self._solver))
         self._writer.finish(status, detail, summarise(Run(self._writer.path)))
 
@@ -219,14 +221,6 @@ class Recorder:
             rate = self._steps * len(self._solver) / max(self._seconds, 1e-9) / 1e6
             self._bar.set_postfix_str(f"{rate:.1f} M point-steps/s", refresh=False)
             self._bar.update(self._solver.time - self._stage_start - self._bar.n)
-
-    @contextmanager
-    def _timed(self) -> Iterator[None]:
-        start = clock.perf_counter()
-        try:
-            yield
-        finally:
-            self._seconds += clock.perf_counter() - start
 
 
 def _times(duration: float, interval: float, further: FloatArray) -> list[float]:

@@ -4,23 +4,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
+from typing import cast
 
 import numpy as np
 import numpy.typing as npt
-import shapely
 
 from . import _check
 from ._check import FloatArray
 from ._record import Record
 from .materials import Material
 from .outline import Outline
+from .stones import Stone, Stones
+from .stones.stone import Shape
 from .walls import Free, Walls
 
 _GRID_LINE = 1e-6
-_SLIVER = 1e-9
 _MOST_MATERIALS = 65_535
+_MOST_STONES = 2**31 - 1
+_NO_STONES = np.empty(0, dtype=np.int32)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +37,8 @@ class Points:
     volume : area in the plane, m2 (m3 a metre of width), shape (n,)
     mass : kg/m, shape (n,)
     material : index into the scene's materials, shape (n,), whole numbers
+    stone : number of the stone that the point is part of, -1 for none, shape (n,), whole numbers;
+        all -1 where left out
 
     Raises
     ------
@@ -46,26 +51,20 @@ class Points:
     volume: FloatArray
     mass: FloatArray
     material: npt.NDArray[np.int32]
+    stone: npt.NDArray[np.int32] = field(default_factory=lambda: _NO_STONES)
 
     def __post_init__(self) -> None:
         n = len(_check.array("position", self.position, ("n", 2)))
         shapes = {"position": (n, 2), "half_length": (n, 2), "volume": (n,), "mass": (n,)}
         for name, shape in shapes.items():
             object.__setattr__(self, name, _check.array(name, getattr(self, name), shape))
-        material = np.array(self.material)
-        if material.shape != (n,) or material.dtype.kind not in "iu":
-            raise TypeError(
-                f"material must be an array of whole numbers of shape ({n},), "
-                f"got {material.dtype} of shape {material.shape}"
-            )
-        if n and not 0 <= material.min() <= material.max() <= _MOST_MATERIALS:
-            raise ValueError(
-                f"material must be numbers in [0, {_MOST_MATERIALS}], "
-                f"got {material.min()} to {material.max()}"
-            )
-        material = material.astype(np.int32)
-        material.setflags(write=False)
-        object.__setattr__(self, "material", material)
+        stone = np.full(n, -1) if self.stone is _NO_STONES else self.stone
+        numbers = {
+            "material": _check.numbers("material", self.material, n, 0, _MOST_MATERIALS),
+            "stone": _check.numbers("stone", stone, n, -1, _MOST_STONES),
+        }
+        for name, values in numbers.items():
+            object.__setattr__(self, name, values)
 
     def __len__(self) -> int:
         return len(self.position)
@@ -79,8 +78,9 @@ class Scene(Record):
     ----------
     outline : outline of the slope
     soil : material of the slope
-    stones : outlines of the stones, inside the slope; they may touch but not overlap
-    stone : material of the stones; needed with stones, not allowed without
+    stones : the stones (`Stones`, or a sequence of Stone, Outline and Ellipse), inside the slope;
+        they may touch but not overlap
+    stone : material of the stones that have none of their own; needed with such, and only then
     cell : side of a grid cell, m, > 0. The grid starts at the lower left corner of the outline's
         bounding box
     points_per_cell : points a cell, the square of a whole number; the points lie on a lattice
@@ -100,7 +100,7 @@ class Scene(Record):
     outline: Outline
     soil: Material
     _: KW_ONLY
-    stones: Sequence[Outline] = ()
+    stones: Stones | Sequence[Stone | Shape] = Stones()  # noqa: RUF009 (frozen)
     stone: Material | None = None
     cell: float = 0.1
     points_per_cell: int = 4
@@ -127,8 +127,17 @@ class Scene(Record):
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """The materials that `points.material` counts: soil, then that of the stones if any."""
-        return (self.soil,) if self.stone is None else (self.soil, self.stone)
+        """The materials that `points.material` counts: soil, that of the stones that have none of
+        their own, then theirs, each once."""
+        own = (stone.material for stone in self._stones)
+        kinds = dict.fromkeys(kind for kind in (self.stone, *own) if kind is not None)
+        return (self.soil, *kinds)
+
+    @property
+    def material_names(self) -> tuple[str, ...]:
+        """Names of the materials: soil and stone, or soil, stone 1, stone 2 and so on."""
+        kinds = len(self.materials) - 1
+        return ("soil", *(f"stone {k}" if kinds > 1 else "stone" for k in range(1, kinds + 1)))
 
     @property
     def spacing(self) -> float:
@@ -159,15 +168,15 @@ class Scene(Record):
     def points(self) -> Points:
         """The material points at the start, row by row from the bottom, each row from the left."""
         position = self.outline.lattice(self.spacing)
-        material = np.zeros(len(position), dtype=np.int32)
-        for number, stone in enumerate(self.stones):
-            inside = stone.contains(position)
-            if not inside.any():
-                raise ValueError(
-                    f"stones[{number}] must hold a point, got none at the spacing of "
-                    f"{self.spacing:.6g} m: its area is {stone.area:.6g} m2"
-                )
-            material[inside] = 1
+        numbers = self._stones.numbers(position)
+        counts = np.bincount(numbers[numbers >= 0], minlength=len(self._stones))
+        for number in np.flatnonzero(counts == 0):
+            raise ValueError(
+                f"stones[{number}] must hold a point, got none at the spacing of "
+                f"{self.spacing:.6g} m: its area is {self._stones[number].area:.6g} m2"
+            )
+        kinds = [self.materials.index(stone.material or self.stone) for stone in self._stones]
+        material = np.array([*kinds, 0], dtype=np.int32)[numbers]
         volume = np.full(len(position), self.spacing**2)
         return Points(
             position=position,
@@ -175,43 +184,34 @@ class Scene(Record):
             volume=volume,
             mass=volume * np.array([kind.density for kind in self.materials])[material],
             material=material,
+            stone=numbers,
         )
 
+    @property
+    def _stones(self) -> Stones:
+        return cast(Stones, self.stones)
+
     def _check_stones(self) -> None:
-        if isinstance(self.stones, Outline) or not isinstance(self.stones, Sequence):
-            raise TypeError(f"stones must be a sequence of Outline, got {self.stones!r}")
-        self._store(stones=tuple(self.stones))
-        for number, stone in enumerate(self.stones):
-            _check.instance(f"stones[{number}]", stone, Outline, "an Outline")
+        self._store(stones=Stones(self.stones) if type(self.stones) is not Stones else self.stones)
         if self.stone is not None:
             _check.instance("stone", self.stone, Material, "a material or None")
-        if bool(self.stones) != (self.stone is not None):
+        bare = sum(stone.material is None for stone in self._stones)
+        if bool(bare) != (self.stone is not None):
             raise ValueError(
-                "stone must be given with stones and only then, "
-                f"got {self.stone!r} with {len(self.stones)} stones"
+                "stone must be given with stones that have no material of their own and only then, "
+                f"got {self.stone!r} with {bare} such stones"
             )
-        self._check_stones_inside()
-        self._check_stones_apart()
-
-    def _check_stones_inside(self) -> None:
-        for number, stone in enumerate(self.stones):
-            outside = stone.polygon.difference(self.outline.polygon).area
-            if outside > _SLIVER * stone.area:
-                raise ValueError(
-                    f"stones[{number}] must lie inside the outline, got {outside:.6g} m2 "
-                    f"of its {stone.area:.6g} m2 outside"
-                )
-
-    def _check_stones_apart(self) -> None:
-        polygons = np.array([stone.polygon for stone in self.stones], dtype=object)
-        pairs = shapely.STRtree(polygons).query(polygons, predicate="intersects").T
-        for first, second in pairs[pairs[:, 0] < pairs[:, 1]]:
-            shared = polygons[first].intersection(polygons[second]).area
-            if shared > _SLIVER * min(polygons[first].area, polygons[second].area):
-                raise ValueError(
-                    f"stones[{first}] must not overlap stones[{second}], "
-                    f"got {shared:.6g} m2 in common"
-                )
+        if len(outside := self._stones.outside(self.outline)):
+            raise ValueError(
+                f"stones[{outside[0]}] must lie inside the outline, got {len(outside)} of "
+                f"{len(self._stones)} stones that do not: {outside.tolist()}"
+            )
+        if len(overlaps := self._stones.overlaps()):
+            first, second = overlaps[0]
+            raise ValueError(
+                f"stones[{first}] must not overlap stones[{second}], got {len(overlaps)} pairs "
+                f"that overlap: {overlaps.tolist()}"
+            )
 
     def _check_walls(self) -> None:
         left, bottom, right, top = self.outline.bounds

@@ -109,7 +109,7 @@ class Simulation:
         self.solver.set_damping(*self.stages.settling.to_core())
         recorder.start("gravity", ramp)
         while self.solver.time < ramp:
-            recorder.advance(min(recorder.next_time(), ramp))
+            recorder.advance(ramp)
 
     def settle(self, recorder: Recorder) -> None:
         """Damping brings the slope to rest.
@@ -131,7 +131,7 @@ class Simulation:
                     f"potential energy, {ratio:.3g} now, has not stayed below ratio = "
                     f"{settling.ratio} for {window:.3g} s, in which a wave crosses the scene twice"
                 )
-            row = recorder.advance(recorder.next_time())
+            row = recorder.advance(math.inf, rows=1)
             ratio = row["kinetic"] / potential
             if ratio > settling.ratio:
                 calm_since = self.solver.time
@@ -152,9 +152,9 @@ class Simulation:
         slide = self.stages.slide
         recorder.start("slide", slide.duration)
         peak = 0.0
+        rows = 1 if slide.rest_ratio > 0 else None
         while self.solver.time < slide.duration:
-            until = min(recorder.next_time(), slide.duration)
-            kinetic = recorder.advance(until)["kinetic"]
+            kinetic = recorder.advance(slide.duration, rows=rows)["kinetic"]
             peak = max(peak, kinetic)
             if kinetic < slide.rest_ratio * peak:
                 recorder.detail = f"at rest after {self.solver.time:.6g} s"

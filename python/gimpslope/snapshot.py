@@ -33,6 +33,7 @@ class PointsAtStart:
     volume : area in the plane, m2, shape (n,)
     half_length : half the sides of the point's rectangle, m, shape (n, 2)
     material : index into the scene's materials, 0 being the soil, shape (n,)
+    stone : number of the stone that the point is part of, -1 in the soil, shape (n,)
     """
 
     position: FloatArray
@@ -40,6 +41,7 @@ class PointsAtStart:
     volume: FloatArray
     half_length: FloatArray
     material: npt.NDArray[np.int32]
+    stone: npt.NDArray[np.int32]
 
     def __len__(self) -> int:
         return len(self.position)
@@ -55,7 +57,9 @@ class Snapshot:
     position : m, shape (n, 2)
     velocity : m/s, shape (n, 2)
     stress : xx, yy, zz, xy, tension positive, Pa, shape (n, 4)
-    plastic_strain : equivalent plastic strain since the trigger, shape (n,)
+    plastic_strain : equivalent plastic strain: the sum since the trigger, its return of stresses
+        included, of sqrt(2/3 de:de), de the deviatoric part of the plastic strain increment of a
+        step; change of volume does not count, shape (n,)
     volume : area in the plane, m2, shape (n,)
     points : the points at the start of the slide
     """
@@ -78,6 +82,15 @@ class Snapshot:
     def displacement(self) -> FloatArray:
         """Displacement since the trigger, m, shape (n, 2)."""
         return self.position - self.points.position
+
+    @property
+    def half_length(self) -> FloatArray:
+        """Half the sides of a point's domain, those of the start scaled to the present volume, m.
+
+        They serve pictures and surfaces. Shape (n, 2).
+        """
+        growth = np.sqrt(self.volume / self.points.volume)
+        return self.points.half_length * growth[:, np.newaxis]
 
     @property
     def density(self) -> FloatArray:
@@ -111,9 +124,12 @@ class Snapshot:
         )
 
     @property
+    def displacement_sizes(self) -> FloatArray:
+        """Displacement in all, sideways (|u_x|) and up or down (|u_y|), m, shape (n, 3)."""
+        moved = self.displacement
+        return np.column_stack([np.linalg.norm(moved, axis=1), np.abs(moved)])
+
+    @property
     def max_displacement(self) -> MaxDisplacement:
         """Largest displacements of any point since the trigger, m."""
-        moved = self.displacement
-        horizontal, vertical = np.abs(moved).max(axis=0)
-        total = float(np.hypot(*moved.T).max())
-        return MaxDisplacement(total, float(horizontal), float(vertical))
+        return MaxDisplacement(*self.displacement_sizes.max(axis=0).tolist())

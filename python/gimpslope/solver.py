@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -157,6 +157,24 @@ class Solver:
         with a fixed step the first one that reaches it is the last. Raises as `advance` does."""
         self._core.advance_to(_check.finite("time", time))
 
+    def advance_through(self, times: npt.ArrayLike) -> None:
+        """Step to each of the times (s, shape (k,), growing) in turn, as `advance_to` does, and
+        keep a row of energies there for `take_rows`.
+
+        A time that is not ahead when its turn comes has no row. Raises as `advance_to` does, and
+        keeps the rows of before.
+        """
+        wanted = _check.array("times", times, ("k",))
+        if (np.diff(wanted) <= 0).any():
+            raise ValueError(f"times must grow, got {wanted}")
+        self._core.advance_through(wanted)
+
+    def take_rows(self) -> dict[str, npt.NDArray[Any]]:
+        """The rows kept since they were last taken, by column, each of shape (k,): time (s), step,
+        those of `Energies`, and with a ledger those of `Ledger` (J/m)."""
+        rows: dict[str, npt.NDArray[Any]] = self._core.take_rows()
+        return rows
+
     def set_gravity(self, x: float, y: float, ramp: float = 0.0) -> None:
         """Acceleration (x, y), m/s2, which grows linearly over the first `ramp` seconds."""
         self._core.set_gravity(
@@ -193,6 +211,11 @@ class Solver:
         Raises `ValueError` unless the method keeps a ledger.
         """
         return Ledger(**self._core.ledger())
+
+    def values(self, name: str, *, single: bool = False) -> npt.NDArray[np.floating[Any]]:
+        """A field by the name of its property, such as "velocity", in the order in which the points
+        were given; rounded to 32 bits with `single`."""
+        return self._core.get_single(name) if single else self._core.get(name)
 
     def view(self, name: str) -> FloatArray:
         """A field in storage order without a copy, read-only: it shows the present state for as

@@ -108,6 +108,7 @@ def write_points(writer: RunWriter) -> None:
         POINTS.volume,
         POINTS.half_length,
         POINTS.material,
+        POINTS.stone,
         ("soil", "stone"),
     )
 

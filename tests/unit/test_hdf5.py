@@ -44,7 +44,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_root_attributes_describe_the_run(path: Path) -> None:
     with h5py.File(path, "r") as file:
         assert file.attrs["format"] == "gimpslope run"
-        assert file.attrs["format_version"] == 1
+        assert file.attrs["format_version"] == 2
         assert file.attrs["gimpslope_version"] == "0.0.0"
         assert file.attrs["created"].endswith("+00:00")
         assert file.attrs["status"] == "finished"
@@ -114,8 +114,8 @@ def test_points_can_be_replaced_at_the_trigger(tmp_path: Path) -> None:
     synthetic.write_points(writer)
     points = synthetic.POINTS
     moved = points.position - 0.01
-    rest = (points.mass, points.volume, points.half_length, points.material, ("soil", "stone"))
-    writer.write_points(moved, *rest)
+    rest = (points.mass, points.volume, points.half_length, points.material, points.stone)
+    writer.write_points(moved, *rest, ("soil", "stone"))
     np.testing.assert_array_equal(hdf5.read_points(writer.path)["position"], moved)
 
 

@@ -10,6 +10,7 @@ import pytest
 from gimpslope.materials import DruckerPrager, Elastic
 from gimpslope.outline import Outline
 from gimpslope.scene import Scene
+from gimpslope.stones import Ellipse, Stone, Stones
 from gimpslope.walls import Coulomb, Fixed, Free, Roller, Walls
 
 SOIL = DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)
@@ -53,8 +54,9 @@ def test_arrays_have_the_promised_form():
         "volume": (32,),
         "mass": (32,),
         "material": (32,),
+        "stone": (32,),
     }
-    assert points.material.dtype == np.int32
+    assert points.material.dtype == points.stone.dtype == np.int32
     for field in fields(points):
         assert not getattr(points, field.name).flags.writeable
 
@@ -140,20 +142,30 @@ INSIDE = box(0.2, 0.2, 0.4, 0.4)
 @pytest.mark.parametrize(
     ("stones", "stone", "error", "text"),
     [
-        ([INSIDE], None, ValueError, "^stone must be given .* got None with 1 stones"),
-        ([], STONE, ValueError, "^stone must be given .* got Elastic.* with 0 stones"),
+        ([INSIDE], None, ValueError, "^stone must be given .* got None with 1 such stones"),
+        ([], STONE, ValueError, "^stone must be given .* got Elastic.* with 0 such stones"),
         ([INSIDE], "granite", TypeError, "^stone must be a material or None, got 'granite'"),
-        (INSIDE, STONE, TypeError, "^stones must be a sequence of Outline, got Outline"),
-        ([INSIDE, 3], STONE, TypeError, r"^stones\[1\] must be an Outline, got 3"),
-        ([INSIDE, box(1.8, 0, 0.3, 1)], STONE, ValueError, r"^stones\[1\] must lie .* got 0\.1 m2"),
-        ([box(5, 5, 1, 1)], STONE, ValueError, r"^stones\[0\] must lie inside .* got 1 m2"),
+        (INSIDE, STONE, TypeError, "^stones must be a sequence of Stone.* got Outline"),
+        (
+            [INSIDE, 3],
+            STONE,
+            TypeError,
+            r"^stones\[1\] must be a Stone, .* got 3",
+        ),
+        (
+            [INSIDE, box(1.8, 0, 0.3, 1)],
+            STONE,
+            ValueError,
+            r"^stones\[1\] must lie .* got 1 of 2 .*: \[1\]$",
+        ),
+        ([box(5, 5, 1, 1)], STONE, ValueError, r"^stones\[0\] must lie inside .* got 1 of 1"),
         (
             [INSIDE, box(1, 0.2, 0.4, 0.4), box(0.5, 0.2, 0.4, 0.4)],
             STONE,
             ValueError,
-            r"^stones\[0\] must not overlap stones\[2\], got 0\.04 m2",
+            r"^stones\[0\] must not overlap stones\[2\], got 1 pairs that overlap: \[\[0, 2\]\]",
         ),
-        ([INSIDE, INSIDE], STONE, ValueError, r"overlap stones\[1\], got 0\.16 m2"),
+        ([INSIDE, INSIDE], STONE, ValueError, r"overlap stones\[1\]"),
         ([box(0.51, 0.51, 0.01, 0.01)], STONE, ValueError, r"^stones\[0\] must hold a point"),
     ],
 )
@@ -167,11 +179,39 @@ def test_stones_may_touch_each_other_and_the_outline():
     assert Scene(BLOCK, SOIL, stones=stones, stone=STONE).points.material.sum() == 3 * 100
 
 
+def test_each_stone_has_its_number_and_its_material():
+    granite, chalk = replace(STONE, density=2700), replace(STONE, density=2000)
+    stones = [
+        Stone(box(0.0, 0.0, 0.5, 0.5), granite),
+        Ellipse((1.5, 0.5), (0.6, 0.3), angle=90),
+        Stone(box(0.5, 0.5, 0.5, 0.5), chalk),
+        Stone(box(1.0, 0.0, 0.2, 0.2), granite),
+    ]
+    scene = Scene(BLOCK, SOIL, stones=stones, stone=STONE)
+    points = scene.points
+    assert scene.materials == (SOIL, STONE, granite, chalk)
+    assert scene.material_names == ("soil", "stone 1", "stone 2", "stone 3")
+    of_stone = np.array([0, 2, 1, 3, 2])  # in the soil (-1), then in each
+    np.testing.assert_array_equal(points.material, of_stone[points.stone + 1])
+    np.testing.assert_array_equal(np.unique(points.stone), [-1, 0, 1, 2, 3])
+    assert (points.stone == 0).sum() == 100
+    x, y = points.position[points.stone == 1].T - [[1.5], [0.5]]
+    assert ((x / 0.15) ** 2 + (y / 0.3) ** 2).max() < 1
+    np.testing.assert_allclose(points.mass[points.stone == 2], 2000 * 0.0025)
+
+
+def test_stones_that_all_have_a_material_need_none_for_the_rest():
+    stones = Stones([INSIDE]).with_material(STONE)
+    assert Scene(BLOCK, SOIL, stones=stones).materials == (SOIL, STONE)
+    with pytest.raises(ValueError, match=r"^stone must be given .* with 0 such stones"):
+        Scene(BLOCK, SOIL, stones=stones, stone=STONE)
+
+
 def test_round_trip_through_json():
     scene = Scene(
         Outline.slope(angle=40),
         SOIL,
-        stones=[box(1.1, 1.3, 0.4, 0.7), box(3.1, 1.3, 0.4, 0.7)],
+        stones=[box(1.1, 1.3, 0.4, 0.7), Stone(Ellipse((3, 2), (0.9, 0.4), 30), SOIL)],
         stone=STONE,
         cell=0.2,
         points_per_cell=9,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "../sweep/dilatation.hpp"
+#include "../sweep/energies.hpp"
 #include "../sweep/loops.hpp"
 #include "../sweep/move.hpp"
 #include "../sweep/nodes.hpp"
@@ -45,6 +46,7 @@ struct Usf {
       for_each_slab(view, thread, [&](int slab) {
         Report report;
         report.ledger = reports[slab].ledger;
+        report.energies = reports[slab].energies;
         for_each_block(view, slab, [&](const Block& block) {
           if (report.lost < 0) move_block(view, input, block, report);
         });
@@ -67,14 +69,18 @@ struct Usf {
     }
     for_each_slab(view, thread, [&](int slab) {
       Ledger ledger;
+      Energies energies;
       for_each_block(view, slab, [&](const Block& block) {
         if (averaged) {
           averaged_stress_block<Shape, kOwnDomain>(view, input, block, ledger);
         } else {
           stress_block<Shape, kOwnDomain>(view, input, block, ledger);
         }
+        if constexpr (!PointsView<Real>::relative)
+          if (input.wants_energies) add_elastic_energy(view, block, energies);
       });
       reports[slab].ledger = ledger;
+      reports[slab].energies = energies;
     });
     if (averaged) {
       for_each_slab(view, thread, [&](int slab) {
@@ -99,6 +105,10 @@ struct Usf {
     evaluate<Shape, kOwnDomain>(view, begin, n, weights);
     scatter_momentum(view, begin, n, weights);
     if (input.wants_speeds) add_speeds(view, block, report.speeds);
+    if constexpr (!PointsView<Real>::relative)
+      if (input.wants_energies)
+        add_energy_of_motion(view, block, input.full_gravity_x, input.full_gravity_y,
+                             report.energies);
   }
 };
 

@@ -1,4 +1,5 @@
-// The energies of the points.
+// The energies of the points: by a sweep of its own, or on the way in a step, where the points are
+// in the cache already.
 #pragma once
 
 #include "../material/material.hpp"
@@ -8,29 +9,41 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Adds those of a block, and puts the square of its largest speed in place of the speed.
-inline void add_energies(const View<double>& view, const Block& block, double gravity_x,
-                         double gravity_y, Energies& sum) {
+/// Adds the elastic energy of a block.
+inline void add_elastic_energy(const View<double>& view, const Block& block, Energies& sum) {
+  const PointsView<double>& p = view.points;
+  const int begin = block.begin, n = block.end - block.begin;
+  const double *xx = p.stress_xx + begin, *yy = p.stress_yy + begin;
+  const double *zz = p.stress_zz + begin, *xy = p.stress_xy + begin;
+  const double* volume = p.volume + begin;
+  const Compliance compliance = compliance_of(view.laws[block.material].drucker_prager.elastic);
+  double elastic = 0.0;
+#pragma omp simd reduction(+ : elastic)
+  for (int k = 0; k < n; ++k) {
+    const Stress stress{xx[k], yy[k], zz[k], xy[k]};
+    elastic += 0.5 * volume[k] * product(compliance, stress, stress);
+  }
+  sum.elastic += elastic;
+}
+
+/// Adds the kinetic and potential energy of a block, and puts the square of its largest speed in
+/// place of the speed.
+inline void add_energy_of_motion(const View<double>& view, const Block& block, double gravity_x,
+                                 double gravity_y, Energies& sum) {
   const PointsView<double>& p = view.points;
   const int begin = block.begin, n = block.end - block.begin;
   const double *x = p.x + begin, *y = p.y + begin, *vx = p.vx + begin, *vy = p.vy + begin;
-  const double *xx = p.stress_xx + begin, *yy = p.stress_yy + begin;
-  const double *zz = p.stress_zz + begin, *xy = p.stress_xy + begin;
-  const double *mass = p.mass + begin, *volume = p.volume + begin;
-  const Compliance compliance = compliance_of(view.laws[block.material].drucker_prager.elastic);
-  double kinetic = 0.0, potential = 0.0, elastic = 0.0, fastest = sum.max_speed;
-#pragma omp simd reduction(+ : kinetic, potential, elastic) reduction(max : fastest)
+  const double* mass = p.mass + begin;
+  double kinetic = 0.0, potential = 0.0, fastest = sum.max_speed;
+#pragma omp simd reduction(+ : kinetic, potential) reduction(max : fastest)
   for (int k = 0; k < n; ++k) {
     const double square = vx[k] * vx[k] + vy[k] * vy[k];
     fastest = square > fastest ? square : fastest;
     kinetic += 0.5 * mass[k] * square;
     potential -= mass[k] * (gravity_x * x[k] + gravity_y * y[k]);
-    const Stress stress{xx[k], yy[k], zz[k], xy[k]};
-    elastic += 0.5 * volume[k] * product(compliance, stress, stress);
   }
   sum.kinetic += kinetic;
   sum.potential += potential;
-  sum.elastic += elastic;
   sum.max_speed = fastest;
 }
 
@@ -41,7 +54,8 @@ inline void measure_energies(const View<double>& view, double gravity_x, double 
     take_slabs(view, thread, 0, 1, [&](int slab) {
       Energies sum;
       for_each_block(view, slab, [&](const Block& block) {
-        add_energies(view, block, gravity_x, gravity_y, sum);
+        add_elastic_energy(view, block, sum);
+        add_energy_of_motion(view, block, gravity_x, gravity_y, sum);
       });
       reports[slab].energies = sum;
     });

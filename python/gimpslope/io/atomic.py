@@ -67,6 +67,7 @@ class _StagedFile(io.RawIOBase):
         self._disk = disk
         self._disk_size = disk.seek(0, io.SEEK_END)
         self._pending: list[tuple[int, bytes]] = []
+        self._pending_end = 0
         self._position = 0
         self.size = self._disk_size
 
@@ -91,10 +92,12 @@ class _StagedFile(io.RawIOBase):
     def write(self, data: ReadableBuffer) -> int:
         new = bytes(data)
         start, stop = self._position, self._position + len(new)
-        self._pending = [
-            piece for old in self._pending for piece in _outside(old, start, stop) if piece[1]
-        ]
+        if start < self._pending_end:
+            self._pending = [
+                piece for old in self._pending for piece in _outside(old, start, stop) if piece[1]
+            ]
         self._pending.append((start, new))
+        self._pending_end = max(self._pending_end, stop)
         self._position = stop
         self.size = max(self.size, stop)
         return len(new)
@@ -111,7 +114,7 @@ class _StagedFile(io.RawIOBase):
         self._disk.truncate(max(self.size, self._disk_size))
         self._write_to_disk(ordered[len(new) :])
         self._disk.truncate(self.size)
-        self._pending = []
+        self._pending, self._pending_end = [], 0
 
     def _write_to_disk(self, pieces: list[tuple[int, bytes]]) -> None:
         for offset, data in pieces:

@@ -1,4 +1,4 @@
-"""The run file: HDF5, format 1, readable with h5py alone.
+"""The run file: HDF5, format 2, readable with h5py alone.
 
 Root attributes
     format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
@@ -42,7 +42,7 @@ from numpy.typing import ArrayLike, NDArray
 from .atomic import change, uninterrupted
 
 FORMAT = "gimpslope run"
-FORMAT_VERSION = 1
+FORMAT_VERSION = 2
 STAGES = ("gravity", "settling", "slide")
 STATUSES = ("running", "finished", "interrupted", "failed")
 
@@ -74,6 +74,7 @@ POINTS = {
     "volume": Quantity("f8", (), "m2", "volume per metre out of the plane at the start"),
     "half_length": Quantity("f8", (2,), "m", "half of the point's width and height"),
     "material": Quantity("i4", (), "1", "index into the attribute material_names"),
+    "stone": Quantity("i4", (), "1", "number of the stone, -1 in the soil"),
 }
 
 ENERGY = {
@@ -148,7 +149,7 @@ class RunWriter:
         self.path = Path(path)
         self._columns = ENERGY | (LEDGER if ledger else {})
         self._rows: list[Arrays] = []
-        self._snapshots: list[Arrays] = []
+        self._snapshots: list[tuple[float, Arrays]] = []
         self._count = 0
         _make_room(self.path, overwrite)
         with change(self.path) as file:
@@ -174,13 +175,14 @@ class RunWriter:
         volume: ArrayLike,
         half_length: ArrayLike,
         material: ArrayLike,
+        stone: ArrayLike,
         material_names: Sequence[str],
     ) -> None:
         """Write the points; a second call, at the trigger, replaces the values of the first.
 
         `position` and `half_length` are (n, 2) in m, `mass` (n,) in kg/m, `volume` (n,)
-        in m2, `material` (n,) indices into `material_names`. Raises `ValueError` for any
-        other shape.
+        in m2, `material` (n,) indices into `material_names`, `stone` (n,) numbers or -1. Raises
+        `ValueError` for any other shape.
         """
         values = {
             "position": position,
@@ -188,6 +190,7 @@ class RunWriter:
             "volume": volume,
             "half_length": half_length,
             "material": material,
+            "stone": stone,
         }
         count = len(np.asarray(position))
         points = _checked(values, POINTS, count)
@@ -209,10 +212,9 @@ class RunWriter:
         self._rows.append(_checked(rows, self._columns, count))
 
     def append_snapshot(self, time: float, fields: Mapping[str, ArrayLike]) -> None:
-        """Keep one snapshot of the slide at `time` (s), an array for every name in `FIELDS`, for
-        the next flush."""
-        values = _checked(fields, SNAPSHOT_FIELDS, self._count)
-        self._snapshots.append(values | {"time": np.array(time)})
+        """Keep one snapshot of the slide at `time` (s) for the next flush: an array for every name
+        in `SNAPSHOT_FIELDS`, which is not copied where it has the type of the file."""
+        self._snapshots.append((time, _checked(fields, SNAPSHOT_FIELDS, self._count, copy=False)))
 
     def write_trigger(
         self, *, energy_released: float, settling_time: float, settling_ratio: float
@@ -268,9 +270,11 @@ class RunWriter:
                         column = np.concatenate([rows[name] for rows in self._rows])
                         _extend(file["energy"][name], column)
                 if self._snapshots:
-                    for name in (*FIELDS, "time"):
-                        moments = np.stack([moment[name] for moment in self._snapshots])
-                        _extend(file["snapshots"][name], moments)
+                    for name in SNAPSHOT_FIELDS:
+                        moments = [fields[name] for _, fields in self._snapshots]
+                        _extend_by_chunks(file["snapshots"][name], moments)
+                    times = np.array([time for time, _ in self._snapshots])
+                    _extend(file["snapshots"]["time"], times)
                 yield file
             self._rows.clear()
             self._snapshots.clear()
@@ -297,7 +301,7 @@ def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:
 def read_attributes(path: str | PathLike[str]) -> dict[str, Any]:
     """The root attributes; JSON text is decoded.
 
-    Raises `FileNotFoundError`, or `ValueError` for a file that is not a run file of format 1.
+    Raises `FileNotFoundError`, or `ValueError` for a file that is not a run file of this format.
     """
     with _opened(path) as file:
         attributes = {name: _plain(value) for name, value in file.attrs.items()}
@@ -402,12 +406,17 @@ def _make_room(path: Path, overwrite: bool) -> None:
 
 
 def _checked(
-    values: Mapping[str, ArrayLike], quantities: Mapping[str, Quantity], count: int
+    values: Mapping[str, ArrayLike],
+    quantities: Mapping[str, Quantity],
+    count: int,
+    *,
+    copy: bool = True,
 ) -> Arrays:
     """The values as arrays, refused unless they have just these names and (count, ...) shapes."""
     if values.keys() != quantities.keys():
         raise ValueError(f"the names must be {', '.join(quantities)}, got {', '.join(values)}")
-    arrays = {name: np.array(values[name], dtype=q.dtype) for name, q in quantities.items()}
+    convert = np.array if copy else np.ascontiguousarray
+    arrays = {name: convert(values[name], dtype=q.dtype) for name, q in quantities.items()}
     for name, array in arrays.items():
         shape = (count, *quantities[name].shape)
         if array.shape != shape:
@@ -448,3 +457,11 @@ def _extend(dataset: h5py.Dataset, values: NDArray[Any]) -> None:
     length = len(dataset)
     dataset.resize(length + len(values), axis=0)
     dataset[length:] = values
+
+
+def _extend_by_chunks(dataset: h5py.Dataset, values: Sequence[NDArray[Any]]) -> None:
+    """Append arrays that are a chunk each, without HDF5's copies on the way."""
+    length = len(dataset)
+    dataset.resize(length + len(values), axis=0)
+    for number, value in enumerate(values, start=length):
+        dataset.id.write_direct_chunk((number,) + (0,) * value.ndim, value)

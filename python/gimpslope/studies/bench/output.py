@@ -16,7 +16,7 @@ from ...solver import Solver
 from . import in_turn
 from .cases import Case
 
-DURATION = 5.0  # s, of the run that is meant
+DURATION = 10.0  # s, of slope A
 SNAPSHOTS = 200  # in it
 ROW_INTERVAL = 1e-3  # s
 SHARE = 0.05
