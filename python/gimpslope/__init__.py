@@ -19,8 +19,11 @@ from .ledger import Ledger
 from .materials import DruckerPrager, Elastic, Material
 from .method import Method
 from .outline import Outline
+from .recording import Recording
 from .run import Run, open
 from .scene import Points, Scene
+from .scene_file import load
+from .setup import Setup
 from .simulation import NotSettledError, simulate
 from .solver import Diverged, Energies, Solver
 from .stages import Gravity, Settling, Slide, Stages
@@ -45,10 +48,12 @@ __all__ = [
     "NotSettledError",
     "Outline",
     "Points",
+    "Recording",
     "Roller",
     "Run",
     "Scene",
     "Settling",
+    "Setup",
     "Slide",
     "Solver",
     "Stages",
@@ -56,6 +61,7 @@ __all__ = [
     "Stones",
     "Walls",
     "kernel",
+    "load",
     "open",
     "simulate",
     "stones",

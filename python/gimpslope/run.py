@@ -1,35 +1,23 @@
-"""A run file opened for analysis: energy, speed, plastic zone and displacement."""
+"""A run file opened for analysis: energy, speed, plastic zone, displacement, surface and stones."""
 
 from __future__ import annotations
 
-from functools import cached_property
 from html import escape
 from os import PathLike
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _check
+from . import analysis
 from ._check import FloatArray
-from .energy import Energy, energy_of
-from .io import hdf5
-from .ledger import LedgerRows, ledger_of
-from .method import Method
-from .scene import Scene
-from .snapshot import MaxDisplacement, PointsAtStart, Snapshot
-from .stages import Stages
+from .analysis import LEAST_BAND, PLASTIC_THRESHOLD, REST_SHARE, ROUGHNESS_LENGTH
+from .run_file import Moment, RunFile
+from .snapshot import MaxDisplacement
 from .summary import readable, summarise
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-PLASTIC_THRESHOLD = 0.01
-"""Equivalent plastic strain above which a point counts as part of the plastic zone."""
-
-_TIME_TOLERANCE = 0.01
-_SOIL = 0
 
 
 def open(path: str | PathLike[str]) -> Run:
@@ -43,166 +31,159 @@ def open(path: str | PathLike[str]) -> Run:
     return Run(path)
 
 
-class Run:
+class Run(RunFile):
     """A run file opened for analysis.
 
-    The file is opened for each reading and closed after it, so that a run can be looked at while it
-    is still being written. Points are in the order in which they were given.
+    The time of a method is in s since the trigger, "peak" for the moment of the largest kinetic
+    energy so far, and None for the end; the snapshot nearest to it is taken, and a time before the
+    first or after the last snapshot refused with `ValueError`. The functions of
+    `gimpslope.analysis` say more of what the methods give.
     """
-
-    def __init__(self, path: str | PathLike[str]) -> None:
-        self.path = Path(path)
-        hdf5.read_attributes(self.path)
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """The root attributes of the file as they are now, JSON text decoded."""
-        return hdf5.read_attributes(self.path)
-
-    @property
-    def status(self) -> str:
-        """ "running" (also of a killed run), "finished", "interrupted" or "failed"."""
-        return str(self.attributes["status"])
-
-    @property
-    def status_detail(self) -> str:
-        """How the run ended, in words."""
-        return str(self.attributes["status_detail"])
-
-    @cached_property
-    def scene(self) -> Scene:
-        """What was simulated."""
-        return Scene.from_dict(self.attributes["scene"])
-
-    @cached_property
-    def method(self) -> Method:
-        """How it was computed."""
-        return Method.from_dict(self.attributes["method"])
-
-    @cached_property
-    def stages(self) -> Stages:
-        """The loading stages."""
-        return Stages.from_dict(self.attributes["stages"])
 
     @property
     def summary(self) -> dict[str, float | int | None]:
         """The main results, as `summarise` computes them from the data written so far."""
         return summarise(self)
 
-    @property
-    def trigger(self) -> dict[str, float]:
-        """energy_released (J/m), settling_time (s), settling_ratio; empty before the trigger."""
-        return hdf5.read_trigger(self.path)
+    def phases(self, share: float = REST_SHARE) -> analysis.Phases:
+        """When the slide is fastest (peak) and from when on it rests (rest), s.
 
-    @property
-    def energy(self) -> Energy:
-        """Energy rows of the slide; `energy.stage(name)` gives those of the other stages."""
-        return energy_of(self.path, "slide")
-
-    @property
-    def ledger(self) -> LedgerRows:
-        """Where the energy of the slide went. Raises `ValueError` if the run kept no ledger."""
-        return ledger_of(self.path, "slide")
-
-    @property
-    def times(self) -> FloatArray:
-        """Times of the snapshots, s, shape (k,)."""
-        return hdf5.read_snapshot_times(self.path)
-
-    @property
-    def points(self) -> PointsAtStart:
-        """The points at the start of the slide. Raises `ValueError` if none are written yet."""
-        arrays = hdf5.read_points(self.path)
-        if not arrays:
-            raise ValueError(f"the run must have reached the slide, got none in {str(self.path)!r}")
-        return PointsAtStart(**arrays)
-
-    @property
-    def final(self) -> Snapshot:
-        """The last state: the final one, or the last snapshot of a run that was killed."""
-        found = hdf5.read_final(self.path)
-        if found is None:
-            return self._snapshot(-1)
-        time, arrays = found
-        return Snapshot(time=time, points=self.points, **arrays)
-
-    def snapshot(self, time: float) -> Snapshot:
-        """The snapshot nearest to `time` (s).
-
-        Raises
-        ------
-        TypeError, ValueError
-            If the time is no number, or more than 1 % of the largest interval between snapshots
-            before the first or after the last of them.
+        It rests when the kinetic energy stays at or below `share` of its largest. What the run has
+        not reached is None.
         """
-        times = self.times
-        wanted = _check.finite("time", time)
-        self._refuse_empty(times)
-        tolerance = _TIME_TOLERANCE * np.max(np.diff(times), initial=0.0)
-        if not times[0] - tolerance <= wanted <= times[-1] + tolerance:
-            raise ValueError(
-                f"time must be a number in [{times[0]:.6g}, {times[-1]:.6g}], "
-                f"the times of the snapshots, got {time!r}"
-            )
-        return self._snapshot(int(np.argmin(np.abs(times - wanted))))
+        return analysis.phases_of(self.energy, share)
 
-    def state(self, time: float | None = None) -> Snapshot:
-        """The snapshot nearest to `time` (s), or the last state when it is None."""
-        return self.final if time is None else self.snapshot(time)
+    def fastest(self, time: Moment | None = None) -> analysis.FastestPoint:
+        """The fastest point at `time`: its number, place (m) and speed (m/s)."""
+        return analysis.fastest_point(self.state(time))
 
-    def displacement(self, time: float | None = None) -> FloatArray:
-        """Displacement (x, y) since the trigger, m, shape (n, 2), at `time` (s) or in the end."""
+    def fastest_ever(self) -> analysis.FastestPoint:
+        """The fastest point of all snapshots: when (s), its number, place (m) and speed (m/s).
+
+        `energy.max_speed` has the largest speed of every row, but not whose it is.
+        """
+        return analysis.fastest_of(self.snapshots())
+
+    def displacement(self, time: Moment | None = None) -> FloatArray:
+        """Displacement (x, y) since the trigger at `time`, m, shape (n, 2)."""
         return self.state(time).displacement
 
-    def max_displacement(self, time: float | None = None) -> MaxDisplacement:
-        """Largest displacement in all, sideways (|u_x|) and up or down (|u_y|), m.
+    def max_displacement(
+        self, time: Moment | None = None, *, percentile: float = 100.0
+    ) -> MaxDisplacement:
+        """Largest displacement at `time` in all, sideways (|u_x|) and up or down (|u_y|), m.
 
-        At `time` (s), or in the end when it is None.
+        With a `percentile`, %, what that part of the mass does not exceed.
         """
-        return self.state(time).max_displacement
+        return analysis.max_displacement(self.state(time), percentile)
+
+    def plastic_strain(self, time: Moment | None = None) -> FloatArray:
+        """Equivalent plastic strain of each point at `time`, shape (n,), as `Snapshot` defines."""
+        return self.state(time).plastic_strain
 
     def plastic_zone(
-        self, time: float | None = None, threshold: float = PLASTIC_THRESHOLD
+        self, time: Moment | None = None, threshold: float = PLASTIC_THRESHOLD
     ) -> npt.NDArray[np.bool_]:
-        """Which points are soil with an equivalent plastic strain above a threshold, shape (n,).
+        """Which points are soil with an equivalent plastic strain above a threshold, shape (n,)."""
+        return analysis.plastic_zone(self.state(time), threshold)
 
-        At `time` (s), or in the end when it is None. The default threshold of 1 % is above the
-        elastic strains of the study's soil, about 0.5 %, and far below those in a sliding band.
+    def plastic_share(
+        self, time: Moment | None = None, threshold: float = PLASTIC_THRESHOLD
+    ) -> analysis.PlasticShare:
+        """Share of the mass of soil, and of stones, whose plastic strain is above a threshold."""
+        return analysis.plastic_share(self.state(time), threshold)
+
+    def plastic_bands(
+        self,
+        time: Moment | None = None,
+        threshold: float = PLASTIC_THRESHOLD,
+        *,
+        least: float = LEAST_BAND,
+    ) -> analysis.Bands:
+        """Connected regions of plastic soil on the cells of the grid, and what they go around.
+
+        `len` counts them; regions of an area below `least`, m2, are left out.
         """
-        state = self.state(time)
-        limit = _check.not_negative("threshold", threshold)
-        zone: npt.NDArray[np.bool_] = (state.plastic_strain > limit) & (
-            state.points.material == _SOIL
+        return analysis.plastic_bands(
+            self.state(time),
+            self.scene.cell,
+            origin=self.scene.origin,
+            threshold=threshold,
+            least=least,
         )
-        return zone
+
+    def run_out(self, time: Moment | None = None, *, percentile: float = 100.0) -> float:
+        """How far the toe has moved to the right since the trigger, m.
+
+        With a `percentile`, %, how far the place has up to which that part of the mass lies.
+        """
+        return analysis.run_out(self.state(time), percentile)
+
+    def surface(
+        self, time: Moment | None = None, *, width: float | None = None
+    ) -> analysis.Surface:
+        """Height of the slope over columns of a `width`, m; None: of two cells of the grid.
+
+        Narrower columns miss the topmost points where the slope is drawn out.
+        `surface().roughness()` tells how uneven it is.
+        """
+        width = 2 * self.scene.cell if width is None else width
+        return analysis.surface_of(self.state(time), width, left=self.scene.origin[0])
+
+    def stone_motion(self) -> analysis.StoneMotion:
+        """Translation, rotation and deformation of each stone over the snapshots."""
+        return analysis.stone_motion(self.snapshots(), len(self.scene.stones))
+
+    def stone_outlines(self, time: Moment | None = None) -> list[FloatArray]:
+        """The outline of each stone at `time`, corners (k, 2), m."""
+        return analysis.stone_outlines(self.scene, self.state(time))
 
     def plot_energy(self, ax: Axes | None = None) -> Axes:
         """Kinetic energy of the slide against time."""
         return self.energy.plot(ax)
 
     def plot_speed(
-        self, time: float, ax: Axes | None = None, *, largest: float | None = None
+        self, time: Moment, ax: Axes | None = None, *, largest: float | None = None
     ) -> Axes:
-        """Map of the speed at `time` (s); its colours end at `largest` (m/s) where given."""
+        """Map of the speed at `time`; its colours end at `largest` (m/s) where given."""
         from . import figures
 
         return figures.speed(self, time, ax, largest=largest)
 
     def plot_plastic_zone(
-        self, time: float, ax: Axes | None = None, *, largest: float | None = None
+        self, time: Moment, ax: Axes | None = None, *, largest: float | None = None
     ) -> Axes:
-        """Map of the equivalent plastic strain at `time` (s)."""
+        """Map of the equivalent plastic strain at `time`."""
         from . import figures
 
         return figures.plastic_zone(self, time, ax, largest=largest)
 
     def plot_displacement(
-        self, time: float | None = None, ax: Axes | None = None, *, largest: float | None = None
+        self, time: Moment | None = None, ax: Axes | None = None, *, largest: float | None = None
     ) -> Axes:
-        """Map of the displacement since the trigger at `time` (s), or in the end."""
+        """Map of the displacement since the trigger at `time`."""
         from . import figures
 
         return figures.displacement(self, time, ax, largest=largest)
+
+    def plot_shape(self, time: Moment | None = None, ax: Axes | None = None) -> Axes:
+        """Soil and stones at `time`, and the outline that they started from."""
+        from . import figures
+
+        return figures.shape(self, time, ax)
+
+    def plot_surface(
+        self,
+        time: Moment | None = None,
+        ax: Axes | None = None,
+        *,
+        length: float = ROUGHNESS_LENGTH,
+    ) -> Axes:
+        """Profile of the surface at `time`, its roughness over a length (m), and the outline."""
+        from . import figures
+
+        outline = self.scene.outline.vertices
+        return figures.surfaces({"": self.surface(time)}, ax, length=length, outline=outline)
 
     def __repr__(self) -> str:
         return f"<Run {self.path.name!r}: {self.status}>"
@@ -214,13 +195,3 @@ class Run:
         )
         title = escape(f"{self.path.name}: {self.status}")
         return f"<table><caption>{title}</caption>{rows}</table>"
-
-    def _snapshot(self, number: int) -> Snapshot:
-        times = self.times
-        self._refuse_empty(times)
-        arrays = hdf5.read_snapshot(self.path, number % len(times))
-        return Snapshot(time=float(times[number]), points=self.points, **arrays)
-
-    def _refuse_empty(self, times: FloatArray) -> None:
-        if len(times) == 0:
-            raise ValueError(f"the run must have snapshots, got none in {str(self.path)!r}")

@@ -170,7 +170,7 @@ class Scene(Record):
         position = self.outline.lattice(self.spacing)
         numbers = self._stones.numbers(position)
         counts = np.bincount(numbers[numbers >= 0], minlength=len(self._stones))
-        for number in np.flatnonzero(counts == 0):
+        for number in np.flatnonzero(counts == 0).tolist():
             raise ValueError(
                 f"stones[{number}] must hold a point, got none at the spacing of "
                 f"{self.spacing:.6g} m: its area is {self._stones[number].area:.6g} m2"

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from os import PathLike
 
-import numpy.typing as npt
-
 from . import _check
 from .method import Method
-from .recording import ENERGY_INTERVAL, SNAPSHOT_INTERVAL, Recorder
+from .recorder import Recorder
+from .recording import Recording
 from .run import Run
 from .scene import Scene
+from .setup import Setup
 from .solver import Solver
 from .stages import Stages
 
@@ -29,9 +30,9 @@ def simulate(
     stages: Stages | None = None,
     output: str | PathLike[str] = "run.h5",
     overwrite: bool = False,
-    energy_interval: float = ENERGY_INTERVAL,
-    snapshot_interval: float = SNAPSHOT_INTERVAL,
-    snapshot_times: npt.ArrayLike = (),
+    energy_interval: float = Recording.energy_interval,
+    snapshot_interval: float = Recording.snapshot_interval,
+    snapshot_times: Sequence[float] = (),
     progress: bool = True,
 ) -> Run:
     """Simulate a slope from its unloaded state until the slide ends, and write the run file.
@@ -61,37 +62,26 @@ def simulate(
     After any error, Ctrl-C included, the file holds what was computed and says how it ended. A run
     that diverged ends with its last row and snapshot, for the state after them is torn.
     """
-    simulation = Simulation(scene, method, stages, duration)
-    recorder = Recorder(
-        simulation,
-        output,
-        overwrite=overwrite,
+    stages = Stages() if stages is None else _check.instance("stages", stages, Stages, "Stages")
+    if duration is not None:
+        stages = replace(stages, slide=replace(stages.slide, duration=duration))
+    method = Method() if method is None else method
+    recording = Recording(
         energy_interval=energy_interval,
         snapshot_interval=snapshot_interval,
         snapshot_times=snapshot_times,
-        progress=progress,
     )
-    return simulation.run(recorder)
+    setup = Setup(scene, method, stages, recording)
+    return setup.simulate(output, overwrite=overwrite, progress=progress)
 
 
 class Simulation:
     """The stages of one slope: load, settle, release, slide. `solver` is the state."""
 
-    def __init__(
-        self,
-        scene: Scene,
-        method: Method | None = None,
-        stages: Stages | None = None,
-        duration: float | None = None,
-    ) -> None:
-        self.scene = _check.instance("scene", scene, Scene, "a Scene")
-        method = Method() if method is None else method
-        stages = Stages() if stages is None else stages
-        self.method = _check.instance("method", method, Method, "a Method")
-        self.stages = _check.instance("stages", stages, Stages, "Stages")
-        if duration is not None:
-            self.stages = replace(stages, slide=replace(stages.slide, duration=duration))
-        self.solver = Solver.of(scene, self.method, elastic=True)
+    def __init__(self, setup: Setup) -> None:
+        self.setup = _check.instance("setup", setup, Setup, "a Setup")
+        self.scene, self.stages = setup.scene, setup.stages
+        self.solver = Solver.of(setup.scene, setup.method, elastic=True)
 
     def run(self, recorder: Recorder) -> Run:
         """All stages, one after the other, recorded."""

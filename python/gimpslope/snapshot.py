@@ -101,27 +101,12 @@ class Snapshot:
     def to_meshio(self) -> meshio.Mesh:
         """The points as vertices with their fields, for any format that meshio writes.
 
-        `run.snapshot(1.6).to_meshio().write("slope.vtu")` makes a file for ParaView. Vectors get a
-        third component of zero; stress is xx, yy, zz, xy.
+        `run.snapshot(1.6).to_meshio().write("slope.vtu")` makes a file for ParaView. The fields are
+        those of `gimpslope.io.vtk.to_mesh`.
         """
-        import meshio
+        from .io.vtk import to_mesh
 
-        n = len(self.position)
-        deep = {
-            name: np.column_stack([getattr(self, name), np.zeros(n)])
-            for name in ("position", "velocity", "displacement")
-        }
-        return meshio.Mesh(
-            deep.pop("position"),
-            [("vertex", np.arange(n)[:, np.newaxis])],
-            point_data={
-                **deep,
-                "stress": self.stress,
-                "plastic_strain": self.plastic_strain,
-                "density": self.density,
-                "material": self.points.material,
-            },
-        )
+        return to_mesh(self)
 
     @property
     def displacement_sizes(self) -> FloatArray:

@@ -121,7 +121,7 @@ def test_free_fall_keeps_speed_and_energy() -> None:
 def test_slope_slides_and_its_energy_is_accounted_for(tmp_path: Path) -> None:
     cell = 0.8
     run = gs.simulate(
-        reference.soil_slope(cell=cell),
+        reference.slope(cell=cell),
         duration=2.0,
         method=gs.Method(shape=SHAPE, viscosity=0.5625, ledger=True),
         output=tmp_path / "slope.h5",

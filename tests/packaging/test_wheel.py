@@ -32,7 +32,7 @@ SLIDE = """
 import sys
 import gimpslope as gs
 from gimpslope.studies import reference
-solver = gs.Solver.of(reference.soil_slope(cell=0.8), reference.method(threads=int(sys.argv[1])))
+solver = gs.Solver.of(reference.slope(cell=0.8), reference.method(threads=int(sys.argv[1])))
 solver.advance(100)
 print(gs.__file__, solver.energies().kinetic > 0)
 """

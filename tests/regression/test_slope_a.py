@@ -20,11 +20,11 @@ PEAKS = {0.2: 150.9e3, 0.1: 159.3e3, 0.05: 162.5e3}
 
 def slide(path: Path, reading: str, cell: float, duration: float) -> gs.Run:
     return gs.simulate(
-        reference.soil_slope(reading, cell),
+        reference.slope("soil", reading, cell),
         duration,
         method=reference.method(reading),
         output=path / "run.h5",
-        snapshot_times=reference.SNAPSHOT_TIMES,
+        snapshot_times=reference.RECORDING.snapshot_times,
         progress=False,
     )
 

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import gimpslope as gs
-from gimpslope.recording import Recorder
+from gimpslope.recorder import Recorder
 from gimpslope.simulation import Simulation
 from gimpslope.studies import reference
 
-SLOPE = reference.soil_slope(cell=0.8)
+SLOPE = reference.slope(cell=0.8)
 METHOD = reference.method()
 STAGES = gs.Stages(gs.Gravity(0.3), gs.Settling(ratio=1e-7), gs.Slide(duration=3.0))
 
@@ -26,13 +26,5 @@ def simulate(path: Path, **options: Any) -> gs.Run:
 @contextmanager
 def recording(simulation: Simulation, path: Path) -> Iterator[Recorder]:
     """A recorder with the defaults of `simulate`."""
-    with Recorder(
-        simulation,
-        path,
-        overwrite=False,
-        energy_interval=0.005,
-        snapshot_interval=0.2,
-        snapshot_times=(),
-        progress=False,
-    ) as recorder:
+    with Recorder(simulation, path, progress=False) as recorder:
         yield recorder

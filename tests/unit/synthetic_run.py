@@ -16,11 +16,10 @@ import numpy.typing as npt
 
 from gimpslope.io.hdf5 import RunWriter
 from gimpslope.materials import DruckerPrager
-from gimpslope.method import Method
 from gimpslope.outline import Outline
 from gimpslope.run import Run
 from gimpslope.scene import Scene
-from gimpslope.stages import Stages
+from gimpslope.setup import Setup
 
 END = 4.0
 SNAPSHOT_INTERVAL = 0.25
@@ -90,9 +89,7 @@ def new_writer(path: Path, *, overwrite: bool = False) -> RunWriter:
     """A writer of a run of the synthetic scene, nothing written but its parameters."""
     return RunWriter(
         path,
-        scene_json=json.dumps(SCENE.to_dict()),
-        method_json=json.dumps(Method().to_dict()),
-        stages_json=json.dumps(Stages().to_dict()),
+        setup={name: json.dumps(part) for name, part in Setup(SCENE).to_dict().items()},
         version="0.0.0",
         instruction_set="none",
         threads=1,

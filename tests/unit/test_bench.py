@@ -212,7 +212,7 @@ def test_machine_refuses_less_than_no_work(name: str) -> None:
 def test_output_is_written_at_the_rates_of_the_whole_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(output, "SHARE", 0.01)
     cost = output.measure(Case(400))
-    assert cost.rows == 1 + 0.01 * output.DURATION / output.ROW_INTERVAL
+    assert cost.rows == 1 + 0.01 * output.DURATION / output.RECORDING.energy_interval
     assert cost.snapshots == 1 + 0.01 * output.SNAPSHOTS
     assert cost.share < 1
     assert list(cost.parts) == ["stress", "move", "nodes", "sort", "output", "rest"]

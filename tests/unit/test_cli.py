@@ -14,6 +14,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 from gimpslope import cli, figures
+from gimpslope.cli import run as run_command
 from gimpslope.studies import reference, verify
 from gimpslope.studies.bench import guard
 from gimpslope.studies.verify import bar
@@ -41,7 +42,7 @@ def test_run_with_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["run", "soil", *words.split(), *more.split()]) == 0
     run = gs.open("all.h5")
     assert run.status == "finished"
-    assert run.scene == reference.soil_slope("literal", 0.8)
+    assert run.scene == reference.slope("soil", "literal", 0.8)
     assert run.method == reference.method(
         "literal", courant=0.3, threads=2, volumetric_strain="cell_average"
     )
@@ -52,7 +53,7 @@ def test_run_with_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     assert {"kinetic_energy.png", "ledger.png", "speed.png", "plastic_zone.png"} <= drawn
     assert {"displacement.png", "displacement_bars.png"} <= drawn
     shown = capsys.readouterr()
-    assert "reading literal" in shown.out and "paper" in shown.out
+    assert "slope A, soil, literal" in shown.out and "paper" in shown.out
     for value in ("1.6", "> 3", "9.3", "8.9", "5.4"):
         assert value in shown.out
     assert f"{run.summary['max_displacement_total']:.2f}" in shown.out
@@ -63,10 +64,10 @@ def test_run_with_every_option(capsys: pytest.CaptureFixture[str]) -> None:
 def test_defaults(undrawn: list[Any]) -> None:
     assert cli.main([*COARSE]) == 0
     run = gs.open("soil.h5")
-    assert run.scene == reference.soil_slope("identified", 0.8)
+    assert run.scene == reference.slope("soil", "identified", 0.8)
     assert run.method == reference.method("identified")
     assert run.method.step == ("courant", 0.4)
-    assert undrawn[0][1:] == ("soil_figures", reference.PAPER)
+    assert undrawn[0][1:] == ("soil_figures", reference.PAPER["soil"])
     np.testing.assert_allclose(run.times, [0, 0.2], atol=1e-12)
 
 
@@ -158,7 +159,7 @@ def test_failed_run_has_exit_code_1(
     def fails(*_: Any, **__: Any) -> None:
         raise gs.NotSettledError("not at rest")
 
-    monkeypatch.setattr(cli.Simulation, "run", fails)
+    monkeypatch.setattr(run_command.Simulation, "run", fails)
     assert cli.main(COARSE) == 1
     assert "not at rest" in capsys.readouterr().err
 

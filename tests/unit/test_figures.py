@@ -13,6 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from gimpslope import figures
+from gimpslope.figures.quantity import SPEED
+from gimpslope.figures.single import moments
 from gimpslope.run import Run
 
 REFERENCE = {
@@ -35,8 +37,8 @@ def ax() -> Axes:
 
 
 def squares(ax: Axes) -> PolyCollection:
-    """The points as they are drawn on top."""
-    found = ax.collections[-1]
+    """The points as they are drawn over what fills gaps between them."""
+    found = ax.collections[1]
     assert isinstance(found, PolyCollection)
     return found
 
@@ -79,6 +81,27 @@ def test_plastic_strain_is_drawn_for_soil_only(run: Run, ax: Axes) -> None:
     np.testing.assert_array_equal(np.ma.getmaskarray(values), synthetic.POINTS.material == 1)
 
 
+def test_stones_have_edges_and_shades_of_their_own(run: Run, ax: Axes) -> None:
+    assert run.plot_shape(1.0, ax) is ax
+    (edge,) = ax.collections[2].get_paths()
+    np.testing.assert_allclose(edge.vertices[:-1], run.stone_outlines(1.0)[0], atol=1e-9)
+    shades = squares(ax).get_array()
+    np.testing.assert_array_equal(np.ma.getmaskarray(shades), synthetic.POINTS.stone < 0)
+    texts = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert texts == ["soil", "stone", "outline at the start"]
+
+
+def test_the_moment_of_the_peak(run: Run, ax: Axes) -> None:
+    assert run.plot_speed("peak", ax).get_title() == "2.00 s"
+
+
+def test_surface_with_its_roughness(run: Run, ax: Axes) -> None:
+    assert run.plot_surface(0.0, ax) is ax
+    np.testing.assert_allclose(ax.lines[0].get_xydata()[:, 1], run.surface(0.0).y)
+    rough = 100 * run.surface(0.0).roughness()
+    assert ax.get_legend().get_texts()[0].get_text() == f"roughness {rough:.2g} cm"
+
+
 def test_a_map_of_any_values(run: Run, ax: Axes) -> None:
     state = run.snapshot(1.0)
     drawn = figures.map_of(state.density, state, ax, label="density (kg/m3)", cmap="cividis")
@@ -94,7 +117,7 @@ def test_displacement_bars_stand_beside_the_paper(run: Run, ax: Axes) -> None:
 
 
 def test_panels_share_their_scales(run: Run) -> None:
-    figure = figures._panels(run, figures._SPEED, figures.SPEED_TIMES)
+    figure = moments(run, SPEED, figures.SPEED_TIMES)
     panels = figure.axes[:3]
     assert len({ax.get_xlim() for ax in panels}) == 1
     for ax in panels:
@@ -112,7 +135,7 @@ def test_write_figures(run: Run, tmp_path: Path) -> None:
 
 def test_panels_after_the_end_say_so(tmp_path: Path) -> None:
     run = synthetic.write_run(tmp_path / "short.h5", until=1.0, finished=False)
-    figure = figures._panels(run, figures._SPEED, figures.SPEED_TIMES)
+    figure = moments(run, SPEED, figures.SPEED_TIMES)
     titles = [ax.get_title() for ax in figure.axes[:3]]
     assert titles[0] == "0.50 s"
     assert titles[2] == "3.50 s: not reached, the last snapshot is at 1.00 s"

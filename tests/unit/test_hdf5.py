@@ -99,9 +99,7 @@ def test_parameters_larger_than_an_hdf5_attribute_header(tmp_path: Path) -> None
     text = json.dumps("x" * 1_000_000)
     hdf5.RunWriter(
         tmp_path / "a.h5",
-        scene_json=text,
-        method_json="{}",
-        stages_json="{}",
+        setup=dict.fromkeys(hdf5.SETUP, "{}") | {"scene": text},
         version="0",
         instruction_set="none",
         threads=1,

@@ -25,7 +25,7 @@ def plain(scene: dict[str, Any], **options: Any) -> _core.Plain:
 
 @pytest.mark.parametrize("reading", reference.READINGS)
 def test_slope(reading: str) -> None:
-    scene = reference.soil_slope(reading, cell=0.2)
+    scene = reference.slope("soil", reading, cell=0.2)
     method = reference.method(reading, ledger=False).to_core()
     points = scene.points
     arrays = (points.position, np.zeros_like(points.position), points.half_length)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import synthetic_run as synthetic
 
+from gimpslope.analysis import first_outlines
 from gimpslope.method import Method
 from gimpslope.run import Run, open
 from gimpslope.stages import Stages
@@ -92,6 +93,100 @@ def test_plastic_zone_is_the_soil_above_the_threshold(run: Run) -> None:
         run.plastic_zone(1.0, threshold=-1.0)
 
 
+def test_plastic_shares_are_of_soil_and_of_stone(run: Run) -> None:
+    soil, mass = synthetic.POINTS.stone < 0, synthetic.POINTS.mass
+    above = soil & (synthetic.fields(1.0)["plastic_strain"] > 0.01)
+    share = run.plastic_share(1.0)
+    assert share.soil == pytest.approx(mass[above].sum() / mass[soil].sum())
+    assert 0.1 < share.soil < 0.9
+    assert share.stone == 0.0
+    assert run.plastic_share(1.0, threshold=1e9).soil == 0.0
+    strain = synthetic.fields(1.0)["plastic_strain"]
+    np.testing.assert_allclose(run.plastic_strain(1.0), strain, rtol=1e-6)
+
+
+def test_all_that_is_plastic_is_one_band(run: Run) -> None:
+    """The strain grows to the right, so that the plastic zone is all to the right of some line."""
+    bands = run.plastic_bands(1.0, least=0.0)
+    zone = run.plastic_zone(1.0)
+    assert len(bands) == 1
+    np.testing.assert_array_equal(bands.label == 0, zone)
+    volume = synthetic.fields(1.0)["volume"]
+    assert bands.area == pytest.approx([volume[zone].sum()])
+    assert len(run.plastic_bands(1.0, least=100.0)) == len(run.plastic_bands(1.0, 1e9)) == 0
+
+
+def test_phases(run: Run, tmp_path: Path) -> None:
+    """The kinetic energy goes with the square of a sine over half its period."""
+    phases = run.phases()
+    assert phases.peak == pytest.approx(synthetic.END / 2)
+    rest = synthetic.END * (1 - np.arcsin(0.1) / np.pi)
+    assert phases.rest == pytest.approx(rest, abs=1e-4)
+    assert run.phases(share=0.25).rest == pytest.approx(synthetic.END * 5 / 6, abs=1e-4)
+    early = synthetic.write_run(tmp_path / "early.h5", until=1.0, finished=False)
+    assert early.phases() == (None, None, pytest.approx(1.0))
+
+
+def test_the_fastest_point_is_the_one_farthest_right(run: Run) -> None:
+    number = int(np.argmax(synthetic.SHARE))
+    start, speed = synthetic.POINTS.position[number], np.sqrt(5) * synthetic.SHARE.max()
+    at_peak = run.fastest("peak")
+    assert (at_peak.time, at_peak.number) == (2.0, number)
+    assert at_peak.speed == pytest.approx(speed)
+    assert at_peak.position == pytest.approx(tuple(start + synthetic.displacement(2.0)[number]))
+    assert run.fastest_ever() == at_peak
+    assert run.fastest(1.0).speed == pytest.approx(speed * synthetic.rate(1.0))
+    assert run.fastest().speed == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_peak_is_a_time_everywhere(run: Run) -> None:
+    assert run.snapshot("peak").time == run.state("peak").time == 2.0
+    np.testing.assert_array_equal(run.displacement("peak"), run.displacement(2.0))
+    with pytest.raises(TypeError, match=r"time must be a finite number.*'top'"):
+        run.snapshot("top")  # type: ignore[arg-type]
+
+
+def test_displacement_and_run_out_by_percentile(run: Run) -> None:
+    mass, moved = synthetic.POINTS.mass, synthetic.displacement(synthetic.END)
+    for percentile in (50.0, 99.0):
+        limit = run.max_displacement(percentile=percentile).horizontal
+        assert mass[moved[:, 0] <= limit + 1e-9].sum() >= percentile / 100 * mass.sum()
+        assert mass[moved[:, 0] < limit - 1e-9].sum() < percentile / 100 * mass.sum()
+    assert run.max_displacement(percentile=100.0) == pytest.approx(run.max_displacement())
+    assert run.run_out() == pytest.approx(2 * REACH)
+    assert 0 < run.run_out(percentile=99) < run.run_out()
+    assert run.run_out(0.0) == 0.0
+
+
+def test_surface_at_the_start_is_the_outline(run: Run) -> None:
+    """Level at 3 m up to x = 1 m, then down at 45 degrees; cells of 0.2 m, their steps included."""
+    surface = run.surface(0.0, width=0.2)
+    np.testing.assert_allclose(surface.x, np.arange(20) * 0.2 + 0.1)
+    np.testing.assert_allclose(surface.y[:5], 3.0)
+    assert np.abs(surface.y[5:] - (4 - surface.x[5:])).max() <= 0.1 + 1e-9
+    assert run.surface(0.0).width == pytest.approx(0.4)  # two cells
+    assert len(run.surface(0.0).x) == 10
+    assert surface.between(1.0, 4.0).roughness(1.0) < 1e-9
+    assert surface.roughness(1.0) > 0.01
+
+
+def test_stones_at_rest_stay_where_they_are(run: Run) -> None:
+    motion = run.stone_motion()
+    assert motion.rotation.shape == (17, 1)
+    np.testing.assert_allclose(motion.time, run.times)
+    for still in (motion.rotation, motion.deformation, motion.translation):
+        np.testing.assert_allclose(still, 0.0, atol=1e-9)
+    np.testing.assert_allclose(motion.centroid[0], [(0.75, 0.75)])
+    np.testing.assert_allclose(run.stone_outlines(3.0), first_outlines(run.scene), atol=1e-12)
+
+
+def test_snapshots_come_in_order(run: Run, tmp_path: Path) -> None:
+    assert [state.time for state in run.snapshots()] == run.times.tolist()
+    empty = Run(synthetic.new_writer(tmp_path / "run.h5").path)
+    with pytest.raises(ValueError, match=r"must have snapshots.*run\.h5"):
+        empty.snapshots()
+
+
 def test_summary(run: Run) -> None:
     moved = synthetic.fields(synthetic.END)["position"]
     expected = {
@@ -161,6 +256,6 @@ def test_a_snapshot_goes_through_meshio(run: Run, tmp_path: Path) -> None:
     state.to_meshio().write(tmp_path / "end.vtu")
     mesh = meshio.read(tmp_path / "end.vtu")
     np.testing.assert_array_equal(mesh.points[:, :2], state.position)
-    np.testing.assert_array_equal(mesh.point_data["stress"], state.stress)
+    np.testing.assert_array_equal(mesh.point_data["stress"][:, :4], state.stress)
     np.testing.assert_array_equal(mesh.point_data["displacement"][:, :2], state.displacement)
     np.testing.assert_array_equal(mesh.point_data["density"], state.density)

@@ -17,6 +17,7 @@ import pytest
 from coarse_slope import SLOPE, STAGES, recording, simulate
 
 import gimpslope as gs
+from gimpslope.setup import Setup
 from gimpslope.simulation import Simulation
 from gimpslope.studies import reference
 
@@ -89,7 +90,7 @@ def test_diverging_run_says_where_and_why(tmp_path: Path) -> None:
 
 def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
     # A Courant number would follow the speed: the step is fixed.
-    simulation = Simulation(SLOPE, reference.method(time_step=2e-3), STAGES)
+    simulation = Simulation(Setup(SLOPE, reference.method(time_step=2e-3), STAGES))
     with pytest.raises(gs.Diverged), recording(simulation, tmp_path / "run.h5") as recorder:
         simulation.load(recorder)
         simulation.settle(recorder)

@@ -15,6 +15,7 @@ from coarse_slope import METHOD, SLOPE, STAGES, recording, simulate
 
 import gimpslope as gs
 from gimpslope.io.hdf5 import ENERGY, FIELDS, POINTS
+from gimpslope.setup import Setup
 from gimpslope.simulation import Simulation
 
 SUMMARY_KEYS = {
@@ -168,7 +169,7 @@ def test_a_slope_that_falls_is_not_at_rest(tmp_path: Path) -> None:
 
 
 def test_trigger_starts_anew_and_records_the_energy_released(tmp_path: Path) -> None:
-    simulation = Simulation(SLOPE, METHOD, STAGES)
+    simulation = Simulation(Setup(SLOPE, METHOD, STAGES))
     solver = simulation.solver
     with recording(simulation, tmp_path / "run.h5") as recorder:
         simulation.load(recorder)
@@ -317,21 +318,12 @@ def test_parameters_come_back_from_the_file(finished: gs.Run) -> None:
     assert finished.scene == SLOPE
     assert finished.method == METHOD
     assert finished.stages == STAGES
-    again = Simulation(finished.scene, finished.method, finished.stages).solver
+    again = Simulation(finished.setup).solver
     np.testing.assert_array_equal(again.position, SLOPE.points.position)
 
 
 def test_repeated_run_is_the_same_to_the_last_bit(finished: gs.Run, tmp_path: Path) -> None:
-    again = gs.simulate(
-        finished.scene,
-        method=finished.method,
-        stages=finished.stages,
-        output=tmp_path / "again.h5",
-        energy_interval=0.01,
-        snapshot_interval=0.5,
-        snapshot_times=(1.6, 0.123, 99.0),
-        progress=False,
-    )
+    again = finished.setup.simulate(tmp_path / "again.h5", progress=False)
     assert contents(again.path) == contents(finished.path)
 
 
@@ -356,7 +348,7 @@ def test_simulations_in_turns_do_not_touch_each_other(tmp_path: Path) -> None:
     def make() -> list[Simulation]:
         soft = replace(SLOPE, soil=replace(SLOPE.soil, young=20e6), cell=1.0)
         short = replace(STAGES, slide=gs.Slide(0.4))
-        return [Simulation(SLOPE, METHOD, short), Simulation(soft, METHOD, short)]
+        return [Simulation(Setup(scene, METHOD, short)) for scene in (SLOPE, soft)]
 
     alone = []
     for number, simulation in enumerate(make()):
@@ -376,7 +368,11 @@ def test_simulations_in_turns_do_not_touch_each_other(tmp_path: Path) -> None:
 
 
 def test_simulations_in_threads_do_not_touch_each_other(finished: gs.Run, tmp_path: Path) -> None:
-    options = {"energy_interval": 0.01, "snapshot_interval": 0.5, "snapshot_times": (1.6, 0.123)}
+    options = {
+        "energy_interval": 0.01,
+        "snapshot_interval": 0.5,
+        "snapshot_times": (1.6, 0.123, 99.0),
+    }
     paths = [tmp_path / "a.h5", tmp_path / "b.h5"]
     workers = [threading.Thread(target=simulate, args=[p], kwargs=options) for p in paths]
     for worker in workers:

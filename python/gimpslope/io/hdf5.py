@@ -3,7 +3,7 @@
 Root attributes
     format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
     ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads;
-    JSON text: scene, method, stages, and at the end of the run summary and timing (wall_seconds
+    JSON text: scene, method, stages, recording, and at the end of the run summary and timing (wall_seconds
     spent stepping, point_steps).
 /points
     the points at the start of the slide, in the order in which they were given; until the slide
@@ -50,7 +50,8 @@ Arrays = dict[str, NDArray[Any]]
 Parameters = ParamSpec("Parameters")
 Found = TypeVar("Found")
 
-JSON_ATTRIBUTES = {"scene", "method", "stages", "summary", "timing"}
+SETUP = ("scene", "method", "stages", "recording")
+JSON_ATTRIBUTES = {*SETUP, "summary", "timing"}
 
 _ENERGY_CHUNK = 1024
 _TIME_CHUNK = 128
@@ -121,7 +122,7 @@ class RunWriter:
     Parameters
     ----------
     path : the file to make; an empty file may exist there
-    scene_json, method_json, stages_json : complete parameters, JSON text
+    setup : complete parameters, JSON text by the names in `SETUP`
     version : of gimpslope
     instruction_set, threads : what the solver runs on
     ledger : whether the energy rows have the columns of `LEDGER` too
@@ -137,9 +138,7 @@ class RunWriter:
         self,
         path: str | PathLike[str],
         *,
-        scene_json: str,
-        method_json: str,
-        stages_json: str,
+        setup: Mapping[str, str],
         version: str,
         instruction_set: str,
         threads: int,
@@ -159,9 +158,8 @@ class RunWriter:
             file.attrs["created"] = datetime.now(UTC).isoformat(timespec="seconds")
             file.attrs["status"] = "running"
             file.attrs["status_detail"] = ""
-            file.attrs["scene"] = scene_json
-            file.attrs["method"] = method_json
-            file.attrs["stages"] = stages_json
+            for name in SETUP:
+                file.attrs[name] = setup[name]
             file.attrs["instruction_set"] = instruction_set
             file.attrs["threads"] = threads
             energy = file.create_group("energy")

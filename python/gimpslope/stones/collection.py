@@ -16,6 +16,7 @@ from ..materials import Material
 from ..outline import Outline
 from . import contact, neighbours, picture
 from .ellipse import Ellipse
+from .rows import for_each
 from .stone import Shape, Stone
 
 _SLACK = 1e-6
@@ -61,8 +62,8 @@ class Stones(Record, Sequence[Stone]):
         material : of all; None: what the scene names for stones that do not say
         """
         centres = _check.array("centres", centres, ("n", 2))
-        axes = _for_each("axes", axes, len(centres), (2,))
-        angles = _for_each("angles", angles, len(centres), ())
+        axes = for_each("axes", axes, len(centres), (2,))
+        angles = for_each("angles", angles, len(centres), ())
         rows = zip(centres.tolist(), axes.tolist(), angles.tolist(), strict=True)
         return cls([Stone(Ellipse(*row), material) for row in rows])
 
@@ -205,12 +206,3 @@ class Stones(Record, Sequence[Stone]):
 def _stone(name: str, item: Stone | Shape) -> Stone:
     _check.instance(name, item, Stone | Shape, "a Stone, an Outline or an Ellipse")
     return item if isinstance(item, Stone) else Stone(item)
-
-
-def _for_each(name: str, value: npt.ArrayLike, n: int, one: tuple[int, ...]) -> FloatArray:
-    """The `n` rows of an array of one row a stone, or of a single row for all."""
-    try:
-        single = np.ndim(value) == len(one)
-    except ValueError:
-        single = False
-    return np.broadcast_to(_check.array(name, value, one if single else (n, *one)), (n, *one))

@@ -18,11 +18,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import _check
-from ..method import Method
+from ..recording import Recording
 from ..run import Run
-from ..scene import Scene
-from ..simulation import simulate
-from . import plain_data, reference
+from . import plain_data, planned, reference
+from .planned import Planned
 from .richardson import Extrapolation, extrapolate
 
 CELLS = (0.4, 0.2, 0.1, 0.05)
@@ -69,30 +68,6 @@ class Convergence:
     quantities: tuple[Quantity, ...]
 
 
-@dataclass(frozen=True)
-class Grid:
-    """A run of slope A to be made, or found made already."""
-
-    reading: str
-    path: Path
-    scene: Scene
-    method: Method
-    duration: float
-    found: Run | None = None
-
-    def run(self, progress: bool) -> Run:
-        """The run that was found, or a new one."""
-        return self.found or simulate(
-            self.scene,
-            self.duration,
-            method=self.method,
-            output=self.path,
-            overwrite=True,
-            snapshot_interval=self.duration,
-            progress=progress,
-        )
-
-
 def plan(
     directory: str | PathLike[str],
     *,
@@ -101,7 +76,7 @@ def plan(
     duration: float = DURATION,
     threads: int = 1,
     overwrite: bool = False,
-) -> list[Grid]:
+) -> list[Planned]:
     """The runs that a study needs, and those that are there already; writes nothing.
 
     Parameters
@@ -121,25 +96,24 @@ def plan(
     FileExistsError
         If a file of those names holds something else and may not be replaced.
     """
-    method = reference.method(reading, threads=threads)
     duration = _check.positive("duration", duration)
     grids = []
     for cell in _check_cells(cells):
+        setup = reference.setup(reading=reading, cell=cell, duration=duration, threads=threads)
+        setup = replace(setup, recording=Recording(snapshot_interval=duration))
         path = Path(directory) / f"soil_{reading}_{cell:g}.h5"
-        grids.append(Grid(reading, path, reference.soil_slope(reading, cell), method, duration))
-    return [replace(grid, found=_found(grid, overwrite)) for grid in grids]
+        grids.append(planned.plan(path, setup, overwrite=overwrite))
+    return grids
 
 
-def converge(grids: Sequence[Grid], *, progress: bool = True) -> Convergence:
+def converge(grids: Sequence[Planned], *, progress: bool = True) -> Convergence:
     """Run what was planned, and extrapolate. Directories are made if need be; raises as `simulate`
     does."""
-    for grid in grids:
-        grid.path.parent.mkdir(parents=True, exist_ok=True)
-    runs = [grid.run(progress) for grid in grids]
+    runs = [grid.run(progress=progress) for grid in grids]
     measured = [_measure(run) for run in runs]
     return Convergence(
-        reading=grids[0].reading,
-        cells=tuple(grid.scene.cell for grid in grids),
+        reading=reference.reading_of(runs[0].scene),
+        cells=tuple(run.scene.cell for run in runs),
         points=tuple(len(run.points) for run in runs),
         seconds=tuple(float(run.attributes["timing"]["wall_seconds"]) for run in runs),
         quantities=tuple(
@@ -148,35 +122,6 @@ def converge(grids: Sequence[Grid], *, progress: bool = True) -> Convergence:
             for values in [tuple(one[title, unit] for one in measured)]
         ),
     )
-
-
-def _found(grid: Grid, overwrite: bool) -> Run | None:
-    """The finished run in the file, or None if it is to be made (anew)."""
-    if not grid.path.exists():
-        return None
-    if _same(grid):
-        run = Run(grid.path)
-        return run if run.status == "finished" else None
-    if not overwrite:
-        raise FileExistsError(
-            f"output must be a directory without other runs unless overwrite is set, got "
-            f"{str(grid.path)!r}, which holds something else or is of another version"
-        )
-    return None
-
-
-def _same(grid: Grid) -> bool:
-    """Whether the file holds this run, made by this version."""
-    try:
-        run = Run(grid.path)
-        return (
-            run.scene == grid.scene
-            and replace(run.method, threads=grid.method.threads) == grid.method
-            and run.stages.slide.duration == grid.duration
-            and run.attributes["gimpslope_version"] == version("gimpslope")
-        )
-    except ValueError:
-        return False
 
 
 def _check_cells(cells: Sequence[float]) -> tuple[float, ...]:

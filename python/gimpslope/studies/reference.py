@@ -11,10 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from .. import _check
 from ..materials import Cone, DruckerPrager
 from ..method import Method, Precision, VolumetricStrain
 from ..outline import Outline
+from ..recording import Recording
 from ..scene import Scene
+from ..setup import Setup
+from ..stages import Slide, Stages
 from ..walls import Coulomb, Fixed, Roller, Walls
 
 
@@ -39,20 +43,34 @@ READINGS = MappingProxyType(
 )
 """`identified` meets all of the paper's figures of slope A; `literal` takes its words for it."""
 
+SLOPES = MappingProxyType({"soil": "A", "arbitrary": "B", "round": "C", "oval": "D"})
+"""The slopes, and the letters that the paper gives them."""
+
 PAPER = MappingProxyType(
     {
-        "time_of_peak": 1.6,
-        "speed_at_peak": 3.0,
-        "max_displacement_total": 9.3,
-        "max_displacement_horizontal": 8.9,
-        "max_displacement_vertical": 5.4,
+        "soil": {
+            "time_of_peak": 1.6,
+            "speed_at_peak": 3.0,
+            "max_displacement_total": 9.3,
+            "max_displacement_horizontal": 8.9,
+            "max_displacement_vertical": 5.4,
+        },
+        "arbitrary": {"time_of_peak": 2.0, "max_displacement_total": 8.7},
+        "round": {"time_of_peak": 1.5},
+        "oval": {"time_of_peak": 1.8},
     }
 )
-"""The paper's figures for slope A, in SI units by the names of a run's summary, with the labels of
-horizontal and vertical displacement put right; of the speed it says "exceeding 3 m/s"."""
+"""The paper's figures for each slope, in SI units by the names of a run's summary, with the labels
+of horizontal and vertical displacement put right; of slope A's speed it says "exceeding 3 m/s"."""
 
-SNAPSHOT_TIMES = (0.5, 1.0, *(round(1.4 + 0.05 * k, 2) for k in range(15)), 3.5, 5.0, 10.0)
-"""Times of the paper's maps, s; a peak between 1.4 and 2.1 s is met to a fortieth of a second."""
+STONE_MODULUS = 20e9
+"""Young's modulus of the paper's stones, Pa."""
+
+RECORDING = Recording(
+    snapshot_times=(0.5, 1.0, *(round(1.4 + 0.05 * k, 2) for k in range(15)), 3.5, 5.0, 10.0)
+)
+"""With the times of the paper's maps; a peak between 1.4 and 2.1 s is met to a fortieth of a
+second."""
 
 
 def soil(reading: str = "identified") -> DruckerPrager:
@@ -67,9 +85,50 @@ def soil(reading: str = "identified") -> DruckerPrager:
     )
 
 
-def soil_slope(reading: str = "identified", cell: float = 0.1) -> Scene:
-    """Slope A: homogeneous soil, 9 m high, 45 degrees; `cell` in m. 23,490 points at 0.1 m."""
-    return Scene(Outline.slope(), soil(reading), cell=cell, walls=_reading(reading).walls)
+def rock(reading: str = "identified", modulus: float = STONE_MODULUS) -> DruckerPrager:
+    """The stone of the paper's table 1, with another Young's modulus (Pa) where one is given."""
+    return DruckerPrager(
+        density=2400,
+        young=modulus,
+        poisson=0.2,
+        friction=42,
+        cohesion=900e3,
+        cone=_reading(reading).cone,
+    )
+
+
+def slope(
+    name: str = "soil",
+    reading: str = "identified",
+    cell: float = 0.1,
+    *,
+    seed: int = 1,
+    stone_modulus: float = STONE_MODULUS,
+) -> Scene:
+    """One of the four slopes, 9 m high, 45 degrees: 23,490 points at 0.1 m.
+
+    Parameters
+    ----------
+    name : one of `SLOPES`
+    reading : one of `READINGS`
+    cell : side of a grid cell, m
+    seed : of the places and shapes of the stones
+    stone_modulus : Young's modulus of the stones, Pa
+    """
+    _check.one_of("slope", name, tuple(SLOPES))
+    walls = _reading(reading).walls
+    if name == "soil":
+        return Scene(Outline.slope(), soil(reading), cell=cell, walls=walls)
+    from . import reference_stones
+
+    return Scene(
+        Outline.slope(),
+        soil(reading),
+        stones=reference_stones.stones(name, seed),
+        stone=rock(reading, stone_modulus),
+        cell=cell,
+        walls=walls,
+    )
 
 
 def method(
@@ -92,6 +151,46 @@ def method(
         ledger=ledger,
         volumetric_strain=volumetric_strain,
     )
+
+
+def setup(
+    name: str = "soil",
+    *,
+    reading: str = "identified",
+    cell: float = 0.1,
+    duration: float = 10.0,
+    seed: int = 1,
+    stone_modulus: float = STONE_MODULUS,
+    courant: float | None = None,
+    time_step: float | None = None,
+    threads: int = 1,
+    volumetric_strain: VolumetricStrain = "point",
+) -> Setup:
+    """All of a run of one of the four slopes, its slide of a duration in s; the rest as in `slope`
+    and `method`."""
+    return Setup(
+        slope(name, reading, cell, seed=seed, stone_modulus=stone_modulus),
+        method(
+            reading,
+            courant=courant,
+            time_step=time_step,
+            threads=threads,
+            volumetric_strain=volumetric_strain,
+        ),
+        Stages(slide=Slide(duration)),
+        RECORDING,
+    )
+
+
+def reading_of(scene: Scene) -> str:
+    """The name of the reading whose walls and cone a scene of the study has.
+
+    Raises `ValueError` if it is none of them.
+    """
+    for name, reading in READINGS.items():
+        if scene.walls == reading.walls and getattr(scene.soil, "cone", None) == reading.cone:
+            return name
+    raise ValueError(f"scene must be of one of the readings {', '.join(READINGS)}, got {scene}")
 
 
 def _reading(name: str) -> Reading:

@@ -83,7 +83,7 @@ class Case:
 
     def slope(self) -> Slope:
         """Slope A with displaced points, and stones where there are any."""
-        scene = reference.soil_slope(cell=0.1 * (SLOPE_A / self.points) ** 0.5)
+        scene = reference.slope(cell=0.1 * (SLOPE_A / self.points) ** 0.5)
         points = _displaced(scene.points, scene.spacing / 4)
         if self.stones == 0.0:
             return Slope(scene, points, scene.materials)

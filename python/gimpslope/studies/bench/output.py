@@ -9,16 +9,19 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from ...recording import Recorder
+from ...recorder import Recorder
+from ...recording import Recording
 from ...run import Run
+from ...setup import Setup
 from ...simulation import Simulation
 from ...solver import Solver
+from ...stages import Slide, Stages
 from . import in_turn
 from .cases import Case
 
 DURATION = 10.0  # s, of slope A
 SNAPSHOTS = 200  # in it
-ROW_INTERVAL = 1e-3  # s
+RECORDING = Recording(energy_interval=1e-3, snapshot_interval=DURATION / SNAPSHOTS)
 SHARE = 0.05
 """Of that run, from its start, which is what is measured."""
 
@@ -56,17 +59,12 @@ def measure(case: Case) -> OutputCost:
 
 def _pass(case: Case) -> OutputCost:
     scene = case.slope().scene
-    simulation = Simulation(scene, case.method(), duration=SHARE * DURATION)
+    stages = Stages(slide=Slide(SHARE * DURATION))
+    simulation = Simulation(Setup(scene, case.method(), stages, RECORDING))
     solver = simulation.solver
     solver.set_materials(scene.materials)  # let go at once, without settling
     with TemporaryDirectory() as folder:
-        recorder = Recorder(
-            simulation,
-            Path(folder) / "slope_a.h5",
-            energy_interval=ROW_INTERVAL,
-            snapshot_interval=DURATION / SNAPSHOTS,
-            progress=False,
-        )
+        recorder = Recorder(simulation, Path(folder) / "slope_a.h5", progress=False)
         before = solver.seconds
         with recorder:
 

@@ -122,10 +122,11 @@ def _time(costs: Sequence[OutputCost]) -> str:
         for one in costs
     ]
     first = costs[0]
+    interval = 1e3 * output.RECORDING.energy_interval
     return "\n".join(
         [
             f"where the time of a run goes: {first.points:,} points, {output.SNAPSHOTS} snapshots "
-            f"and a row every {1e3 * output.ROW_INTERVAL:g} ms in {output.DURATION:g} s",
+            f"and a row every {interval:g} ms in {output.DURATION:g} s",
             _aligned([head, *rows]),
             f"measured over {first.steps:,} steps with {first.snapshots} snapshots and "
             f"{first.rows:,} rows, and the same steps without",

@@ -1,0 +1,24 @@
+"""Files and directories that a command is to write, checked before any work is done."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+
+def make_directory(option: str, path: str) -> None:
+    """Make, before any work is done, the directory for what comes of it."""
+    if not path or Path(path).is_file():
+        raise ValueError(f"{option} must be a directory, got {path!r}")
+    Path(path).mkdir(parents=True, exist_ok=True)
+
+
+def check_file(option: str, path: str | None) -> None:
+    """Refuse, before any work is done, a file that could not be written after it."""
+    if path is None:
+        return
+    folder = Path(path).absolute().parent
+    if Path(path).is_dir() or not folder.is_dir():
+        raise ValueError(f"{option} must be a file in a directory that exists, got {path!r}")
+    if not os.access(path if Path(path).exists() else folder, os.W_OK):
+        raise ValueError(f"{option} must be a file that may be written, got {path!r}")

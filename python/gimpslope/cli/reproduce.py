@@ -1,0 +1,85 @@
+"""`gimpslope reproduce`: the whole reference study."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Callable
+
+from ..studies import reference, reproduce
+from .commands import Commands
+from .paths import make_directory
+
+
+def add(commands: Commands) -> None:
+    """Add the command to a parser."""
+    parser = commands.add_parser(
+        "reproduce",
+        help="run the four slopes of the reference study, and hold its claims against them",
+        description="Runs that are finished are taken as they are, so that a study that was "
+        "stopped goes on with the runs that are missing.",
+    )
+    parser.set_defaults(prepare=_prepare)
+    parser.add_argument(
+        "--reading",
+        nargs="+",
+        choices=list(reference.READINGS),
+        default=list(reference.READINGS),
+        help="(default: both)",
+    )
+    parser.add_argument(
+        "--cell", type=float, default=0.1, metavar="H", help="m (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--stone-modulus",
+        type=float,
+        default=reference.STONE_MODULUS,
+        metavar="PA",
+        help="Young's modulus of the stones, Pa (default: 20e9, the paper's); lower is faster",
+    )
+    parser.add_argument(
+        "--seed",
+        type=int,
+        nargs="+",
+        default=list(reproduce.SEEDS),
+        metavar="N",
+        help="of the stones; with three or more their own spread decides claims (default: 1)",
+    )
+    parser.add_argument(
+        "--duration", type=float, default=10.0, metavar="S", help="of the slides, s (default: 10)"
+    )
+    parser.add_argument(
+        "--jobs", type=int, metavar="N", help="runs at a time (default: as many as processors)"
+    )
+    parser.add_argument("--output", default="study", metavar="DIR", help="(default: %(default)s)")
+    parser.add_argument(
+        "--overwrite", action="store_true", help="replace files of other runs in the directory"
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+
+
+def _prepare(options: argparse.Namespace) -> Callable[[], int]:
+    jobs = (os.cpu_count() or 1) if options.jobs is None else options.jobs
+    if jobs < 1:
+        raise ValueError(f"--jobs must be a whole number >= 1, got {jobs}")
+    slopes = reproduce.plan(
+        options.output,
+        readings=list(dict.fromkeys(options.reading)),
+        cell=options.cell,
+        stone_modulus=options.stone_modulus,
+        seeds=options.seed,
+        duration=options.duration,
+        overwrite=options.overwrite,
+    )
+    make_directory("--output", options.output)
+
+    def command() -> int:
+        studies = reproduce.study(slopes, jobs=jobs, progress=not options.quiet)
+        reproduce.write(studies, options.output)
+        for reading, verdicts in reproduce.report.counts(studies).items():
+            shown = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
+            print(f"claims, reading {reading}: {shown}")
+        print(f"runs, figures and summary (summary.md, summary.html): {options.output}{os.sep}")
+        return 0
+
+    return command

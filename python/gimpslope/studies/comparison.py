@@ -1,0 +1,71 @@
+"""A run beside the reference study, and beside the run that it repeats, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from ..io import hdf5
+from ..run import Run
+
+_ROWS = (
+    ("time of peak kinetic energy", "time_of_peak", "s", "{:g}"),
+    ("peak kinetic energy", "peak_kinetic_energy", "kJ/m", ""),
+    ("fastest point at the peak", "speed_at_peak", "m/s", "> {:g}"),
+    ("largest displacement", "max_displacement_total", "m", "{:g}"),
+    ("  horizontal", "max_displacement_horizontal", "m", "{:g}"),
+    ("  vertical", "max_displacement_vertical", "m", "{:g}"),
+    ("toe", "toe", "m", ""),
+    ("final kinetic energy", "final_kinetic_energy", "J/m", ""),
+)
+
+
+def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[str, float]) -> str:
+    """A run's summary beside the paper's values by the same names, where there are any."""
+    lines = [f"{title:32}{'paper':>8}{'here':>10}" if paper else f"{title:32}{'':>10}"]
+    for label, key, unit, form in _ROWS:
+        published = form.format(paper[key]) if form and key in paper else "-"
+        value = summary[key]
+        scale = 1e-3 if unit == "kJ/m" else 1.0
+        here = "-" if value is None else f"{value * scale:.2f}"
+        lines.append(f"{label:32}{f'{published:>8}' if paper else ''}{here:>10} {unit}")
+    if "max_displacement_horizontal" in paper:
+        lines.append(
+            "The paper swaps the labels of horizontal and vertical; here they are put right."
+        )
+    rate = summary["point_steps_per_second"]
+    if rate is not None:
+        lines.append(
+            f"{summary['points']:,} points, {summary['steps']:,} steps in "
+            f"{summary['wall_seconds']:.1f} s: {rate / 1e6:.1f} M point-steps/s"
+        )
+    return "\n".join(lines)
+
+
+def repetition(first: Run, second: Run) -> str:
+    """Whether a run repeats another one to the last bit; if not, what may be the cause."""
+    if _same(first, second):
+        return f"repeats {first.path} to the last bit"
+    before, after = first.attributes, second.attributes
+    causes = [
+        f"{name.replace('_', ' ')} {before[name]!r} there, {after[name]!r} here"
+        for name in ("status", "gimpslope_version", "instruction_set")
+        if before[name] != after[name]
+    ]
+    return f"differs from {first.path}: {'; '.join(causes) or 'for no cause known'}"
+
+
+def _same(first: Run, second: Run) -> bool:
+    for read in (hdf5.read_energy, hdf5.read_points):
+        before, after = read(first.path), read(second.path)
+        if before.keys() != after.keys() or not all(
+            np.array_equal(before[name], after[name]) for name in before
+        ):
+            return False
+    end, other = hdf5.read_final(first.path), hdf5.read_final(second.path)
+    if end is None or other is None:
+        return end is other
+    return end[0] == other[0] and all(
+        np.array_equal(values, other[1][name]) for name, values in end[1].items()
+    )

@@ -1,0 +1,94 @@
+"""Planned runs in processes of their own, a given number at a time."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import time
+from collections.abc import Sequence
+from multiprocessing.process import BaseProcess
+
+from tqdm import tqdm
+
+from ..io import hdf5
+from ..run import Run
+from .planned import Planned
+
+_PAUSE = 0.2  # s
+_BAR = "{desc} {percentage:3.0f}%|{bar}| {n:.1f} of {total:.0f} s [{elapsed}<{remaining}]"
+
+
+class RunFailed(RuntimeError):
+    """A run of a study did not reach its end."""
+
+
+def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> list[Run]:
+    """Make the runs that are not there yet, at most `jobs` at a time; all of them, in order.
+
+    Ctrl-C stops those that are going, each of which keeps what it has computed.
+
+    Raises
+    ------
+    RunFailed
+        If a run did not reach its end; the others are finished first.
+    """
+    waiting = [one for one in planned if one.found is None]
+    going: dict[str, BaseProcess] = {}
+    total = sum(one.setup.stages.slide.duration for one in waiting)
+    bar = tqdm(total=total, desc="slides", bar_format=_BAR, disable=not progress)
+    try:
+        queue = list(waiting)
+        while queue or going:
+            while queue and len(going) < jobs:
+                one = queue.pop(0)
+                going[str(one.path)] = _start(one)
+            time.sleep(_PAUSE)
+            going = {path: process for path, process in going.items() if process.is_alive()}
+            bar.update(sum(_time_reached(one) for one in waiting) - bar.n)
+    except BaseException:
+        for process in going.values():
+            if process.pid is not None and process.is_alive():
+                os.kill(process.pid, signal.SIGINT)
+        for process in going.values():
+            process.join()
+        raise
+    finally:
+        bar.close()
+    return [_finished(one) for one in planned]
+
+
+def _start(planned: Planned) -> BaseProcess:
+    process = multiprocessing.get_context("spawn").Process(target=_run, args=(planned,))
+    process.start()
+    return process
+
+
+def _run(planned: Planned) -> None:
+    """What the process of a run does; the run file says how it ended."""
+    try:
+        planned.run(progress=False)
+    except (KeyboardInterrupt, RuntimeError):
+        return
+
+
+def _time_reached(planned: Planned) -> float:
+    """Time of the slide that the run file shows, s."""
+    if not planned.path.exists():
+        return 0.0
+    try:
+        columns = hdf5.read_energy(planned.path)
+    except (OSError, ValueError, KeyError):
+        return 0.0
+    slide = columns["stage"] == hdf5.STAGES.index("slide")
+    return float(columns["time"][slide].max(initial=0.0))
+
+
+def _finished(planned: Planned) -> Run:
+    if planned.found is not None:
+        return planned.found
+    run = Run(planned.path) if planned.path.exists() else None
+    if run is None or run.status != "finished":
+        how = "it left no file" if run is None else f"{run.status}: {run.status_detail}"
+        raise RunFailed(f"the run {planned.path} did not reach its end; {how}")
+    return run
