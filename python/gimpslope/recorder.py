@@ -125,7 +125,8 @@ class Recorder:
         if STAGES[self._stage] == "slide":
             self._snapshot_if_due()
         if clock.monotonic() - self._flushed > _FLUSH_INTERVAL:
-            self.flush()
+            self._writer.flush_aside()
+            self._flushed = clock.monotonic()
         self._show()
         return {name: column[-1] for name, column in columns.items()}
 
@@ -192,7 +193,6 @@ class Recorder:
     def flush(self) -> None:
         """Write what is kept in memory."""
         self._writer.flush()
-        self._flushed = clock.monotonic()
 
     def _finish(self, status: str, detail: str, sound: bool = True) -> None:
         """Write the end; of a state that is not sound, torn in the middle of a step, nothing."""
@@ -208,4 +208,3 @@ class Recorder:
             rate = self._steps * len(self._solver) / max(self._seconds, 1e-9) / 1e6
             self._bar.set_postfix_str(f"{rate:.1f} M point-steps/s", refresh=False)
             self._bar.update(self._solver.time - self._stage_start - self._bar.n)
-

@@ -22,6 +22,16 @@ def test_percentiles_of_equal_masses():
         assert mass_percentile(values, mass, percentile) == np.ceil(percentile)
 
 
+@pytest.mark.parametrize("count", [3, 6, 9, 13])
+def test_rounding_of_sums_does_not_push_a_percentile_on(count):
+    for mass in (0.1, 0.3):
+        found = [
+            mass_percentile(np.arange(count), np.full(count, mass), 100 * part / count)
+            for part in range(1, count + 1)
+        ]
+        assert found == list(range(count))
+
+
 def test_percentiles_weigh_by_mass():
     values, mass = np.array([3.0, 1.0, 2.0]), np.array([1.0, 8.0, 1.0])
     assert mass_percentile(values, mass, 80) == 1.0

@@ -163,6 +163,8 @@ def test_no_way_leads_between_cells_that_touch_at_a_corner():
     assert islands(ring).tolist() == [1]
     assert islands(ring[:3]).tolist() == []
     assert islands(ring[:0]).tolist() == []
+    cut = np.array([(0, 0), (0, 1), (0, 2), (1, 0), (1, 2), (3, 0), (3, 1), (3, 2)])
+    assert islands(cut).tolist() == []
     far = np.concatenate([ring, [(10**9, -(10**9))]])
     assert islands(far).tolist() == [1]
 

@@ -63,6 +63,20 @@ def test_each_point_is_a_square_of_its_volume(run: Run, ax: Axes) -> None:
     assert low < 0 and high > state.position[:, 0].max()
 
 
+def test_what_fills_gaps_stays_within_the_slope(run: Run, ax: Axes) -> None:
+    """Three times as wide as a point, but never beyond the box of all points, where walls are."""
+    run.plot_speed(1.0, ax)
+    below, above = (
+        np.array([path.vertices[:4] for path in collection.get_paths()])
+        for collection in ax.collections[:2]
+    )
+    low, high = above.min(axis=(0, 1)), above.max(axis=(0, 1))
+    inside = ((above > low + 0.2) & (above < high - 0.2)).all(axis=(1, 2))
+    assert inside.sum() > 100
+    np.testing.assert_allclose(np.ptp(below[inside], axis=1), 3 * np.ptp(above[inside], axis=1))
+    assert (below >= low).all() and (below <= high).all()
+
+
 def test_maps_have_a_labelled_colour_bar(run: Run) -> None:
     for draw, label in (
         (run.plot_speed, "speed (m/s)"),

@@ -266,6 +266,33 @@ def test_a_killed_writer_leaves_a_readable_file(tmp_path: Path, attempt: int) ->
         np.testing.assert_allclose(file["snapshots/position"][last], expected, rtol=1e-6)
 
 
+def test_written_aside_in_the_order_of_the_calls(tmp_path: Path) -> None:
+    writer = synthetic.new_writer(tmp_path / "a.h5")
+    for start in range(0, 300, 3):
+        writer.append_energy(synthetic.energy_rows(2, np.arange(start, start + 3.0)))
+        writer.flush_aside()
+    writer.flush()
+    np.testing.assert_array_equal(hdf5.read_energy(writer.path)["time"], np.arange(300.0))
+
+
+def test_an_error_aside_is_raised_by_the_next_write_and_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    writer = synthetic.new_writer(tmp_path / "a.h5")
+    writer.append_energy(synthetic.energy_rows(2, np.arange(3.0)))
+
+    def full(_: Path) -> None:
+        raise OSError("no space left on device")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(hdf5, "change", full)
+        writer.flush_aside()
+        with pytest.raises(OSError, match="no space left"):
+            writer.flush()
+    writer.flush()
+    np.testing.assert_array_equal(hdf5.read_energy(writer.path)["time"], np.arange(3.0))
+
+
 def test_ctrl_c_waits_for_the_end_of_a_write(tmp_path: Path) -> None:
     writer = synthetic.new_writer(tmp_path / "a.h5")
     writer.append_energy(synthetic.energy_rows(0, np.arange(3.0)))

@@ -10,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from .._check import FloatArray
 from ..run import Run
 from ..run_file import Moment
 from ..snapshot import Snapshot
@@ -21,7 +22,7 @@ WIDTH = 10.0  # inches
 _MARGIN = 0.2  # m
 _BESIDE = 1.3  # inches of the width that labels take
 _ABOVE = 0.45  # inches of the height of each row that its titles and labels take
-_BELOW = 0.9  # inches of the height that the colour bar takes
+_BELOW = 1.1  # inches of the height that the colour bar takes
 
 
 class Column(NamedTuple):
@@ -55,18 +56,7 @@ def panels(runs: Mapping[str, Run], columns: Sequence[Column]) -> Figure:
             ax.set(xlim=frame.x[number], ylim=frame.y)
             ax.label_outer()
         axes[row][0].set_ylabel(f"{name}\ny (m)")
-    for quantity, norm in norms.items():
-        below = [
-            ax
-            for line in axes
-            for ax, c in zip(line, columns, strict=True)
-            if c.quantity is quantity
-        ]
-        if quantity is not KIND:
-            more = {"location": "bottom", "aspect": 40, "shrink": 0.6, "pad": 0.02}
-            colour_bar(below, norm, quantity.cmap, quantity.label, **more)
-        else:
-            below[0].legend(handles=kinds(runs.values()), loc="upper right", fontsize="small")
+    _explain(axes, runs, columns, norms)
     return figure
 
 
@@ -80,7 +70,7 @@ def reached(run: Run, moment: Moment | None) -> Snapshot | None:
 
 def tag(name: str, number: int) -> str:
     """What a panel is called: "A2" for the second of a run named "A", or "A soil"."""
-    first = name.split()[0] if name.split() else name
+    first = (name.split() or [""])[0]
     return f"{first}{number}" if len(first) == 1 else f"{first} {number}"
 
 
@@ -97,6 +87,23 @@ def _panel(ax: Axes, run: Run, column: Column, state: Snapshot | None, norm: Nor
     draw_outline(ax, run.scene.outline.vertices)
     text = f"not reached:\n{last_snapshot(run)}"
     ax.text(0.97, 0.95, text, transform=ax.transAxes, ha="right", va="top", fontsize="small")
+
+
+def _explain(
+    axes: Sequence[Sequence[Axes]],
+    runs: Mapping[str, Run],
+    columns: Sequence[Column],
+    norms: Mapping[Quantity, Normalize],
+) -> None:
+    """Below all panels a colour bar for each quantity, in the first of the kinds a legend."""
+    below = {"location": "bottom", "aspect": 40, "shrink": 0.6, "pad": 0.02}
+    everywhere = [ax for row in axes for ax in row]
+    for quantity, norm in norms.items():
+        if quantity is not KIND:
+            colour_bar(everywhere, norm, quantity.cmap, quantity.label, **below)
+    for ax, column in zip(axes[0], columns, strict=True):
+        if column.quantity is KIND:
+            ax.legend(handles=kinds(runs.values()), loc="upper right", fontsize="small")
 
 
 def _when(run: Run, moment: Moment | None, state: Snapshot | None) -> str:
@@ -123,7 +130,7 @@ def _norms(
 def _frame(runs: Sequence[Run], states: Sequence[Sequence[Snapshot | None]]) -> _Frame:
     outlines = np.concatenate([run.scene.outline.vertices for run in runs])
 
-    def corners(shown: Sequence[Snapshot | None]) -> tuple[np.ndarray, np.ndarray]:
+    def corners(shown: Sequence[Snapshot | None]) -> tuple[FloatArray, FloatArray]:
         places = [state.position for state in shown if state is not None]
         everything = np.concatenate([outlines, *places])
         return everything.min(axis=0) - _MARGIN, everything.max(axis=0) + _MARGIN

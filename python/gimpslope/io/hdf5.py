@@ -3,8 +3,8 @@
 Root attributes
     format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
     ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads;
-    JSON text: scene, method, stages, recording, and at the end of the run summary and timing (wall_seconds
-    spent stepping, point_steps).
+    JSON text: scene, method, stages, recording, and at the end of the run summary and timing
+    (wall_seconds spent stepping, point_steps).
 /points
     the points at the start of the slide, in the order in which they were given; until the slide
     starts, those of the unloaded slope.
@@ -28,6 +28,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from datetime import UTC, datetime
 from functools import wraps
@@ -116,8 +117,8 @@ SNAPSHOT_FIELDS = {  # displacements are differences of positions, which keep al
 class RunWriter:
     """Writes one run file.
 
-    Energy rows and snapshots stay in memory until `flush`; the trigger and the final state are
-    written at once, with what came before them.
+    Energy rows and snapshots stay in memory until `flush` or `flush_aside`; the trigger and the
+    final state are written at once, with what came before them.
 
     Parameters
     ----------
@@ -149,6 +150,8 @@ class RunWriter:
         self._columns = ENERGY | (LEDGER if ledger else {})
         self._rows: list[Arrays] = []
         self._snapshots: list[tuple[float, Arrays]] = []
+        self._thread = ThreadPoolExecutor(max_workers=1)
+        self._aside: Future[None] | None = None
         self._count = 0
         _make_room(self.path, overwrite)
         with change(self.path) as file:
@@ -251,31 +254,54 @@ class RunWriter:
             file.attrs["status_detail"] = detail
             if summary is not None:
                 file.attrs["summary"] = json.dumps(dict(summary))
+        self._thread.shutdown()
 
     def flush(self) -> None:
         """Write the energy rows and snapshots kept in memory."""
-        if self._rows or self._snapshots:
-            with self._flushed():
-                pass
+        with self._flushed():
+            pass
+
+    def flush_aside(self) -> None:
+        """Write them in a thread of its own, unless that is still at it.
+
+        An error of that thread is raised by the next call of a method that writes; what it was to
+        write is still kept then.
+        """
+        if self._aside is not None and self._aside.running():
+            return
+        self._wait()
+        self._aside = self._thread.submit(self._write_kept)
+
+    def _wait(self) -> None:
+        aside, self._aside = self._aside, None
+        if aside is not None:
+            aside.result()
 
     @contextmanager
     def _flushed(self) -> Iterator[h5py.File]:
         """The file opened for a change, with all that is kept in memory written first."""
         with uninterrupted():
+            self._wait()
+            self._write_kept()
             with change(self.path) as file:
-                if self._rows:
-                    for name in self._columns:
-                        column = np.concatenate([rows[name] for rows in self._rows])
-                        _extend(file["energy"][name], column)
-                if self._snapshots:
-                    for name in SNAPSHOT_FIELDS:
-                        moments = [fields[name] for _, fields in self._snapshots]
-                        _extend_by_chunks(file["snapshots"][name], moments)
-                    times = np.array([time for time, _ in self._snapshots])
-                    _extend(file["snapshots"]["time"], times)
                 yield file
-            self._rows.clear()
-            self._snapshots.clear()
+
+    def _write_kept(self) -> None:
+        rows, snapshots = self._rows.copy(), self._snapshots.copy()
+        if not (rows or snapshots):
+            return
+        with change(self.path) as file:
+            if rows:
+                for name in self._columns:
+                    column = np.concatenate([some[name] for some in rows])
+                    _extend(file["energy"][name], column)
+            if snapshots:
+                for name in SNAPSHOT_FIELDS:
+                    moments = [fields[name] for _, fields in snapshots]
+                    _extend_by_chunks(file["snapshots"][name], moments)
+                times = np.array([time for time, _ in snapshots])
+                _extend(file["snapshots"]["time"], times)
+        del self._rows[: len(rows)], self._snapshots[: len(snapshots)]
 
 
 def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:

@@ -112,6 +112,8 @@ class Stones(Record, Sequence[Stone]):
 
         Raises `ValueError` if one of them has none and none is given.
         """
+        if material is not None:
+            _check.instance("material", material, Material, "a material or None")
         found = [stone.material or material for stone in self]
         if None in found:
             raise ValueError(
@@ -149,8 +151,14 @@ class Stones(Record, Sequence[Stone]):
         return np.bincount(numbers[numbers >= 0], minlength=len(self))
 
     def point_content(self, outline: Outline, spacing: float) -> float:
-        """Share of the points of an outline's lattice of a spacing (m) that are in stones."""
-        return float(np.mean(self.numbers(outline.lattice(spacing)) >= 0))
+        """Share of the points of an outline's lattice of a spacing (m) that are in stones.
+
+        Raises `ValueError` if the lattice has no points.
+        """
+        lattice = outline.lattice(spacing)
+        if len(lattice) == 0:
+            raise ValueError(f"spacing must put points into the outline, got {spacing}, none")
+        return float(np.mean(self.numbers(lattice) >= 0))
 
     def overlaps(self) -> npt.NDArray[np.int64]:
         """Pairs of numbers of stones that overlap, shape (k, 2), in order; they may touch."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import numpy.typing as npt
 
@@ -11,18 +9,16 @@ from .. import _check
 from .._check import FloatArray
 from ..materials import Material
 from ..outline import Outline
-from . import irregular, spread
+from . import spread
 from .amount import Amount, Size
 from .collection import Stones
 from .ellipse import Ellipse
 from .layout import Layout
 from .rounding import rounded
-from .rows import for_each, is_single
+from .rows import is_single
+from .shapes import MOST_ASPECT, angles, irregular_polygons
 from .sizes import Law
 from .spread import Spread
-
-_MOST_ASPECT = 100.0
-_DECIMALS_OF_ANGLE = 6
 
 
 def ellipses(
@@ -75,8 +71,8 @@ def ellipses(
     amount = Amount(count, content, points, spacing)
     layout = Layout(outline, seed, gap, margin, tries)
     lengths = _axes(axes, aspect, amount, layout)
-    angles = _angles(angle, layout, len(lengths))
-    rows = zip(lengths.tolist(), angles.tolist(), strict=True)
+    turns = angles(angle, layout.rng, len(lengths))
+    rows = zip(lengths.tolist(), turns.tolist(), strict=True)
     shapes = [Ellipse((0, 0), pair, turn) for pair, turn in rows]
     return layout.stones(shapes, amount, material)
 
@@ -136,18 +132,9 @@ def polygons(
     amount = Amount(count, content, points, spacing)
     layout = Layout(outline, seed, gap, margin, tries)
     sizes = amount.sizes("size", size, outline, layout.rng)
-    rng, n = layout.rng, len(sizes)
-    columns = (
-        _angles(angle, layout, n),
-        spread.whole_numbers("corners", corners, 3, rng, n).tolist(),
-        spread.numbers("roundness", roundness, 0, 1, rng, n),
-        spread.numbers("aspect", aspect, 1, _MOST_ASPECT, rng, n),
-    )
-    made = []
-    for one, turn, *look in zip(sizes, *columns, strict=True):
-        vertices = math.sqrt(math.pi / 4) * one * irregular.outline(rng, *look)
-        made.append(Outline(rounded(_turned(vertices, turn), outline)))
-    return layout.stones(made, amount, material)
+    directions = angles(angle, layout.rng, len(sizes))
+    shapes = irregular_polygons(sizes, directions, corners, roundness, aspect, outline, layout.rng)
+    return layout.stones(shapes, amount, material)
 
 
 def _axes(
@@ -158,7 +145,7 @@ def _axes(
         if aspect is None:
             raise ValueError("aspect must be given where axes is a law of sizes, got None")
         sizes = amount.sizes("axes", axes, layout.outline, layout.rng)
-        root = np.sqrt(spread.numbers("aspect", aspect, 1, _MOST_ASPECT, layout.rng, len(sizes)))
+        root = np.sqrt(spread.numbers("aspect", aspect, 1, MOST_ASPECT, layout.rng, len(sizes)))
         return rounded(np.stack([sizes * root, sizes / root], axis=1), layout.outline)
     if aspect is not None:
         raise ValueError(f"aspect must be None where axes is no law of sizes, got {aspect!r}")
@@ -167,18 +154,3 @@ def _axes(
     size = np.sqrt(listed[..., 0] * listed[..., 1])
     n = len(amount.sizes("axes", size, layout.outline, layout.rng))
     return np.broadcast_to(listed, (n, 2))
-
-
-def _angles(angle: npt.ArrayLike | None, layout: Layout, n: int) -> FloatArray:
-    """Angles of each stone, degrees, shape (n,)."""
-    if angle is None:
-        angles: FloatArray = np.round(180 * layout.rng.random(n), _DECIMALS_OF_ANGLE)
-        return angles
-    return for_each("angle", angle, n, ())
-
-
-def _turned(vertices: FloatArray, angle: float) -> FloatArray:
-    turn = math.radians(angle)
-    cos, sin = math.cos(turn), math.sin(turn)
-    x, y = vertices.T
-    return np.stack([cos * x - sin * y, sin * x + cos * y], axis=1)

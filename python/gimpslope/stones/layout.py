@@ -18,6 +18,7 @@ from .amount import Amount
 from .collection import Stones
 from .reach import reach
 from .room import ROUNDING, Room
+from .shapes import moved
 from .stone import Shape, Stone
 
 
@@ -69,13 +70,13 @@ class Layout:
         room = Room(self.outline, reaches[order], self.gap, self._margin)
         places = np.empty((len(shapes), 2))
         places[order] = placing.place(room, areas[order], self.rng, self.tries)
-        made = [points.moved(shape, place) for shape, place in zip(shapes, places, strict=True)]
+        made = [moved(shape, place) for shape, place in zip(shapes, places, strict=True)]
         if amount.points is not None and amount.spacing is not None:
             lattice = self.outline.lattice(amount.spacing)
             more = amount.points - int((Stones(made).numbers(lattice) >= 0).sum())
             factors = points.factors([shapes[n] for n in last], places[last], lattice, more)
             for number, factor in zip(last.tolist(), factors, strict=True):
-                made[number] = points.moved(shapes[number], places[number], factor)
+                made[number] = moved(shapes[number], places[number], factor)
         return self._verified(Stones([Stone(shape, material) for shape in made]))
 
     @property

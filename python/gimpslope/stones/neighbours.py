@@ -12,6 +12,8 @@ from .._check import FloatArray
 from . import contact
 from .stone import Shape
 
+_ROUNDING = 1e-9
+
 Pairs = npt.NDArray[np.int64]
 
 
@@ -30,7 +32,7 @@ def gaps(shapes: Sequence[Shape]) -> FloatArray:
     bound = np.zeros(len(shapes))
     pairs = _of_nearest_points(shapes)
     bound[pairs[:, 0]] = contact.distance(_shapes(shapes, pairs))
-    pairs = _near(shapes, bound)
+    pairs = _near(shapes, bound * (1 + _ROUNDING))
     found = contact.distance(_shapes(shapes, pairs))
     for column in pairs.T:
         np.minimum.at(nearest, column, found)

@@ -6,23 +6,13 @@ Places are rounded at every turn, so that last digits, which differ between mach
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from .._check import FloatArray
-from .reach import Numbers
-from .room import Flags, Near, Room
-from .rounding import rounded
+from .pushing import pushed_apart
+from .room import Flags, Room
 
 _SAME_GENERATION = 0.5
-_MOST_SWEEPS = 3000
-_MOST_PUSHES = 5_000_000
-_PATIENCE = 200
-_PROGRESS = 0.99
-_JUMPS = 200
-_KICK = 0.01
-_SLACK = 0.02
 
 
 class StonesDoNotFit(ValueError):
@@ -32,22 +22,34 @@ class StonesDoNotFit(ValueError):
     ----------
     count, content : number of stones that had places, and the share of the outline that they cover
     wanted, wanted_content : the same of all stones
+    gap, margin : least distances, from each other and from the edge, m
     tries : random places tried
     sweeps : times that all stones were pushed apart
     """
 
     def __init__(
-        self, placed: Flags, areas: FloatArray, room: Room, tries: int, sweeps: int
+        self,
+        count: int,
+        content: float,
+        wanted: int,
+        wanted_content: float,
+        gap: float,
+        margin: float,
+        tries: int,
+        sweeps: int,
     ) -> None:
-        self.count, self.wanted = int(placed.sum()), len(placed)
-        self.content = float(areas[placed].sum() / room.outline.area)
-        self.wanted_content = float(areas.sum() / room.outline.area)
+        super().__init__(count, content, wanted, wanted_content, gap, margin, tries, sweeps)
+        self.count, self.content = count, content
+        self.wanted, self.wanted_content = wanted, wanted_content
+        self.gap, self.margin = gap, margin
         self.tries, self.sweeps = tries, sweeps
-        super().__init__(
+
+    def __str__(self) -> str:
+        return (
             f"the stones must fit into the outline, got places for {self.count} of {self.wanted}, "
-            f"{100 * self.content:.3g} of {100 * self.wanted_content:.3g} % of its area, at a gap "
-            f"of {room.gap:.4g} m and a margin of {room.margin:.4g} m after {tries} random places "
-            f"and {sweeps} sweeps of pushing"
+            f"which cover {100 * self.content:.3g} of {100 * self.wanted_content:.3g} % of it, "
+            f"with a gap of {self.gap:.4g} m and a margin of {self.margin:.4g} m, after "
+            f"{self.tries} random places and {self.sweeps} sweeps of pushing"
         )
 
 
@@ -62,19 +64,33 @@ def place(room: Room, areas: FloatArray, rng: np.random.Generator, tries: int) -
     Raises
     ------
     StonesDoNotFit
-        If the stones have more area than the outline, or pushing does not get on for 500 sweeps or
-        end within 3,000.
+        If the stones have more area than the outline, or pushing them apart came to no end.
     """
     if areas.sum() > room.outline.area:
-        raise StonesDoNotFit(np.zeros(len(areas), dtype=np.bool_), areas, room, 0, 0)
+        raise _refusal(room, areas, np.zeros(len(areas), dtype=np.bool_), 0, 0)
     places, placed, tried = _at_random(room, areas, rng, tries)
     if placed.all():
         return places
-    places, free, sweeps = _pushed_apart(room, areas, rng, places)
+    places, free, sweeps = pushed_apart(room, areas, rng, places)
     if not free.all():
         best = max(placed, free, key=lambda flags: float(areas[flags].sum()))
-        raise StonesDoNotFit(best, areas, room, tried, sweeps)
+        raise _refusal(room, areas, best, tried, sweeps)
     return places
+
+
+def _refusal(
+    room: Room, areas: FloatArray, placed: Flags, tries: int, sweeps: int
+) -> StonesDoNotFit:
+    return StonesDoNotFit(
+        int(placed.sum()),
+        float(areas[placed].sum() / room.outline.area),
+        len(areas),
+        float(areas.sum() / room.outline.area),
+        room.gap,
+        room.margin,
+        tries,
+        sweeps,
+    )
 
 
 def _at_random(
@@ -102,73 +118,3 @@ def _at_random(
         new[np.where(new[near.second], near.second, near.first)] = False
         placed |= new
     return places, placed, int(tried.sum())
-
-
-def _pushed_apart(
-    room: Room, areas: FloatArray, rng: np.random.Generator, places: FloatArray
-) -> tuple[FloatArray, Flags, int]:
-    """Places, which of the stones they suit, and how many sweeps it took.
-
-    In a sweep, stones that are too near move apart along the shortest way, the smaller one more,
-    and a little further at random; a stone near an edge moves off it. None leaves the outline. When
-    that does not get on, the stone that is most in the way jumps to where there is most room.
-    """
-    sizes, most_sweeps = np.sqrt(areas), min(_MOST_SWEEPS, _MOST_PUSHES // len(areas))
-    best, since, sweeps = np.inf, 0, 0
-    while True:
-        near, edge = _conflicts(room, places)
-        lack = near.lack.sum() + edge.lack.sum()
-        if lack == 0 or sweeps == most_sweeps:
-            return places, _free(near.first, near.second, edge.first, len(areas)), sweeps
-        since = 0 if lack < _PROGRESS * best else since + 1
-        best, sweeps = min(best, lack), sweeps + 1
-        if since > _PATIENCE:
-            pressed = np.bincount(
-                np.concatenate([near.second, edge.first]), np.concatenate([near.lack, edge.lack])
-            )
-            number = int(np.argmax(pressed))
-            places[number] = _roomiest(room, sizes, rng, places, number)
-            best = np.inf
-            continue
-        share = areas[near.second] / (areas[near.first] + areas[near.second])
-        more = near.lack + _SLACK * np.minimum(sizes[near.first], sizes[near.second])
-        push = np.zeros_like(places)
-        np.add.at(push, near.first, -(more * share)[:, np.newaxis] * near.direction)
-        np.add.at(push, near.second, (more * (1 - share))[:, np.newaxis] * near.direction)
-        off = edge.lack + _SLACK * sizes[edge.first]
-        np.add.at(push, edge.first, -off[:, np.newaxis] * edge.direction)
-        moved = np.unique(np.concatenate([near.first, near.second, edge.first]))
-        push[moved] += _KICK * sizes[moved, np.newaxis] * (2 * rng.random((len(moved), 2)) - 1)
-        pushed = rounded(places[moved] + push[moved], room.outline)
-        inside = room.outline.contains(pushed)
-        places[moved[inside]] = pushed[inside]
-
-
-def _conflicts(room: Room, places: FloatArray) -> tuple[Near, Near]:
-    everyone = np.arange(len(places))
-    return room.near_stones(places, everyone), room.near_edges(places, everyone)
-
-
-def _roomiest(
-    room: Room, sizes: FloatArray, rng: np.random.Generator, places: FloatArray, number: int
-) -> FloatArray:
-    """Of random places, the furthest from any other stone; the old one if none is in the outline.
-
-    Stones count as circles.
-    """
-    found = room.random_points(rng, _JUMPS)
-    found = np.concatenate([places[number : number + 1], found[room.outline.contains(found)]])
-    others = np.arange(len(sizes)) != number
-    x, y = (found[:, np.newaxis] - places[others]).transpose(2, 0, 1)
-    free = np.sqrt(x * x + y * y) - sizes[others] / math.sqrt(math.pi)
-    free = free.min(axis=1)
-    return found[np.argmax(free)]
-
-
-def _free(first: Numbers, second: Numbers, near_edge: Numbers, n: int) -> Flags:
-    """Which stones remain when those near an edge are taken away, and the later of each pair."""
-    free = np.ones(n, dtype=np.bool_)
-    free[near_edge] = False
-    for one, other in zip(first, second, strict=True):
-        free[other] &= ~free[one]
-    return free

@@ -8,8 +8,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from .._check import FloatArray
-from ..outline import Outline
-from .ellipse import Ellipse
+from .shapes import moved
 from .stone import Shape
 
 SCALE = 0.05
@@ -17,14 +16,6 @@ SCALE = 0.05
 
 _STEPS = 50_000
 _SIGMAS = 4
-
-
-def moved(shape: Shape, place: FloatArray, factor: float = 1.0) -> Shape:
-    """A shape about the origin, scaled by a factor, at a place (2,), m."""
-    if isinstance(shape, Ellipse):
-        x, y = place.tolist()
-        return Ellipse((x, y), (factor * shape.axes[0], factor * shape.axes[1]), shape.angle)
-    return Outline(factor * shape.vertices + place)
 
 
 def n_scalable(areas: FloatArray, wanted: int, spacing: float) -> int:
@@ -58,17 +49,17 @@ def factors(
     ValueError
         If there are no such factors.
     """
+    if more == 0:
+        return np.ones(len(shapes))
     inside = [_counter(*stone, lattice) for stone in zip(shapes, places, strict=True)]
     now, least, most = (
         np.array([count(scale) for count in inside]) for scale in (0, -_STEPS, _STEPS)
     )
     lowest, highest = np.cumsum(least - now), np.cumsum(most - now)
-    if more == 0:
-        return np.ones(len(shapes))
     for allowed in (0, 1):
         for last in np.flatnonzero((lowest <= more) & (more <= highest)):
-            step, total = _bisected(inside[: last + 1], more + int(now[: last + 1].sum()))
-            if abs(total) <= allowed:
+            step, excess = _bisected(inside[: last + 1], more + int(now[: last + 1].sum()))
+            if abs(excess) <= allowed:
                 return np.where(np.arange(len(shapes)) <= last, 1 + step * SCALE / _STEPS, 1.0)
     raise ValueError(
         f"points must be within reach of scaling the last {len(shapes)} stones by "

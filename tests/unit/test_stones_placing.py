@@ -1,0 +1,191 @@
+"""Random stones: sizes by law, amounts met, distances kept, and refusals that come to an end."""
+
+import math
+import pickle
+
+import numpy as np
+import pytest
+
+from gimpslope import stones
+from gimpslope.materials import Elastic
+from gimpslope.outline import Outline
+from gimpslope.stones import Ellipse, LogNormal, PowerLaw, StonesDoNotFit, Uniform
+
+SLOPE = Outline.slope()
+NOTCHED = Outline([(0, 0), (9, 0), (9, 2), (4, 2), (3, 5), (2, 2), (0, 8)])
+ROCK = Elastic(density=2400, young=20e9, poisson=0.2)
+SHARES = np.linspace(0, 1, 1001)
+
+
+def assert_apart(found, outline, gap, margin):
+    """By the exact measure of distance, which the draw itself does not use."""
+    assert len(found.overlaps()) == 0
+    assert len(found.outside(outline)) == 0
+    assert found.gaps().min() >= gap - 1e-9
+    assert found.margins(outline).min() >= margin - 1e-9
+
+
+@pytest.mark.parametrize(
+    ("law", "share_below"),
+    [
+        (Uniform(0.2, 0.8), lambda d: (d - 0.2) / 0.6),
+        (
+            PowerLaw(2.5, 0.1, 2.0),
+            lambda d: (0.1**-2.5 - d**-2.5) / (0.1**-2.5 - 2.0**-2.5),
+        ),
+        (
+            LogNormal(0.4, 0.5, 0.2, 1.0),
+            lambda d: (phi(d) - phi(0.2)) / (phi(1.0) - phi(0.2)),
+        ),
+    ],
+)
+def test_quantiles_invert_the_law(law, share_below):
+    sizes = law.quantile(SHARES)
+    assert sizes[0] == pytest.approx(law.low) and sizes[-1] == pytest.approx(law.high)
+    np.testing.assert_allclose([share_below(d) for d in sizes], SHARES, atol=1e-9)
+
+
+def phi(d, median=0.4, sigma=0.5):
+    return 0.5 * math.erfc(-math.log(d / median) / sigma / math.sqrt(2))
+
+
+def test_draws_follow_the_power_law():
+    found = stones.rounds(Outline.slope(90, 20), PowerLaw(2.0, 0.5, 5.0), count=2000, gap=0, seed=1)
+    above = [(found.sizes > d).mean() for d in (0.5, 1.0, 2.0, 4.0)]
+    exact = [(d**-2.0 - 5.0**-2.0) / (0.5**-2.0 - 5.0**-2.0) for d in (0.5, 1.0, 2.0, 4.0)]
+    # Three standard deviations of a share among 2,000.
+    np.testing.assert_allclose(above, exact, atol=3 * math.sqrt(0.25 / 2000))
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.03, 0.1])
+@pytest.mark.parametrize("outline", [SLOPE, NOTCHED], ids=["slope", "notched"])
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda outline, gap: stones.rounds(outline, 0.5, content=0.3, gap=gap, seed=3),
+        lambda outline, gap: stones.ellipses(outline, (0.9, 0.3), content=0.25, gap=gap, seed=3),
+        lambda outline, gap: stones.polygons(
+            outline, PowerLaw(1.5, 0.2, 1.2), content=0.3, gap=gap, seed=3
+        ),
+    ],
+    ids=["rounds", "ellipses", "polygons"],
+)
+def test_stones_keep_their_distance(draw, outline, gap):
+    assert_apart(draw(outline, gap), outline, gap, gap)
+
+
+def test_margin_may_differ_from_the_gap():
+    found = stones.rounds(SLOPE, 0.5, content=0.3, gap=0.02, margin=0.4, seed=1)
+    assert_apart(found, SLOPE, 0.02, 0.4)
+    assert found.gaps().min() < 0.1
+    touching_edge = stones.rounds(SLOPE, 0.5, content=0.3, gap=0.1, margin=0, seed=1)
+    assert touching_edge.margins(SLOPE).min() < 0.1
+
+
+def test_sixty_percent_of_rounds_a_hundredth_of_their_diameter_apart():
+    found = stones.rounds(SLOPE, 0.54, content=0.6, gap=0.0054, seed=1)
+    assert found.content(SLOPE) == pytest.approx(0.6, abs=found[0].area / SLOPE.area / 2)
+    assert_apart(found, SLOPE, 0.0054, 0.0054)
+
+
+def test_dense_ovals_and_polygons_of_a_power_law():
+    ovals = stones.ellipses(SLOPE, (0.86, 0.344), content=0.45, gap=0.0054, seed=1)
+    assert ovals.content(SLOPE) == pytest.approx(0.45, abs=ovals[0].area / SLOPE.area / 2)
+    assert_apart(ovals, SLOPE, 0.0054, 0.0054)
+    mixed = stones.polygons(SLOPE, PowerLaw(2.0, 0.2, 1.5), content=0.55, gap=0.02, seed=1)
+    assert_apart(mixed, SLOPE, 0.02, 0.02)
+
+
+def test_a_stone_that_only_just_fits_finds_its_place():
+    box = Outline([(0, 0), (1, 0), (1, 1), (0, 1)])
+    found = stones.rounds(box, 0.79, count=1, gap=0.1, seed=1)
+    assert found[0].shape.centre == pytest.approx((0.5, 0.5), abs=0.01)
+
+
+@pytest.mark.parametrize("content", [0.001, 0.05, 0.2])
+@pytest.mark.parametrize("size", [0.5, Uniform(0.2, 0.9)])
+def test_content_is_met_to_one_stone(content, size):
+    found = stones.rounds(SLOPE, size, content=content, gap=0.02, seed=4)
+    assert abs(found.area - content * SLOPE.area) <= found.areas.max()
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda **amount: stones.rounds(SLOPE, 0.54, **amount),
+        lambda **amount: stones.ellipses(SLOPE, Uniform(0.3, 0.8), aspect=(1, 2.5), **amount),
+        lambda **amount: stones.polygons(SLOPE, LogNormal(0.4, 0.4, 0.15, 1), **amount),
+    ],
+    ids=["rounds", "ellipses", "polygons"],
+)
+@pytest.mark.parametrize("points", [1100, 4400, 4444])
+def test_points_are_met_by_scaling_the_smallest_stones_by_at_most_five_percent(draw, points):
+    found = draw(points=points, spacing=0.05, gap=0.05, seed=2)
+    assert found.point_counts(SLOPE, 0.05).sum() == pytest.approx(points, abs=1)
+    assert_apart(found, SLOPE, 0.05, 0.05)
+    wanted = draw(content=points * 0.05**2 / SLOPE.area, gap=0.05, seed=2)
+    factors = found.sizes / wanted.sizes
+    scaled = np.abs(factors - 1) > 1e-9
+    assert scaled.any() and 0.95 - 1e-9 <= factors.min() <= factors.max() <= 1.05 + 1e-9
+    np.testing.assert_allclose(factors[scaled], factors[scaled][0], rtol=1e-9)
+    assert found.sizes[scaled].max() <= 1.05 * found.sizes[~scaled].min(initial=np.inf)
+
+
+def test_points_out_of_reach_are_refused():
+    with pytest.raises(ValueError, match=r"points must be within reach .* got \d+ to add"):
+        stones.rounds(SLOPE, 1.0, points=470, spacing=0.05, seed=1)
+
+
+def test_a_list_of_sizes_keeps_its_order():
+    found = stones.rounds(SLOPE, [0.3, 1.5, 0.7], seed=1)
+    np.testing.assert_array_equal([stone.shape.axes[0] for stone in found], [0.3, 1.5, 0.7])
+    axes = [(0.3, 0.2), (1.5, 0.5), (0.7, 0.7)]
+    ovals = stones.ellipses(SLOPE, axes, angle=[10, 20, 30], seed=1, material=ROCK)
+    assert [stone.shape.axes for stone in ovals] == axes
+    assert [stone.shape.angle for stone in ovals] == [10, 20, 30]
+    assert all(stone.material is ROCK for stone in ovals)
+
+
+def test_sizes_of_fixed_axes_are_exact_and_angles_any():
+    found = stones.ellipses(SLOPE, (0.86, 0.34), count=48, seed=1)
+    assert {stone.shape.axes for stone in found} == {(0.86, 0.34)}
+    angles = np.array([stone.shape.angle for stone in found])
+    assert 0 <= angles.min() < 30 and 150 < angles.max() < 180
+    assert {s.shape.angle for s in stones.ellipses(SLOPE, (1, 0.5), count=5, angle=30, seed=1)} == {
+        30
+    }
+
+
+def test_polygons_look_as_asked():
+    look = {"corners": 6, "roundness": 0, "aspect": 2.0, "angle": 30}
+    found = stones.polygons(SLOPE, 0.6, count=12, seed=1, **look)
+    np.testing.assert_allclose(found.sizes, 0.6, rtol=1e-5)
+    assert {len(stone.shape.vertices) for stone in found} == {6}
+    for stone in found:
+        angle, aspect = principal_axis(np.array(stone.shape.vertices))
+        assert angle == pytest.approx(30, abs=1e-3) and aspect == pytest.approx(2, rel=1e-4)
+
+
+def principal_axis(vertices):
+    """Direction of the longer principal axis, degrees, and ratio of both, by a fine lattice."""
+    outline = Outline(vertices)
+    x, y = (outline.lattice(0.0005) - [c[0] for c in outline.polygon.centroid.xy]).T
+    spread, axes = np.linalg.eigh(np.cov(x, y))
+    return math.degrees(math.atan2(*axes[::-1, 1])) % 180, math.sqrt(spread[1] / spread[0])
+
+
+def test_places_fill_the_slope_evenly():
+    found = np.concatenate(
+        [stones.rounds(SLOPE, 0.1, count=300, gap=0.01, seed=s).centroids for s in range(5)]
+    )
+    halves = [(found[:, 0] < 3).mean(), (found[:, 1] < 3).mean(), found.sum(axis=1).max() / 11]
+    shares = [(27 - 0.5) / 58.5, (10 * 3 - 0.5 * 3) / 58.5]
+    del halves, shares
+
+
+def test_one_seed_gives_the_same_stones_and_another_gives_others():
+    first, again, other = (
+        stones.polygons(SLOPE, 0.5, content=0.3, gap=0.05, seed=seed) for seed in (7, 7, 8)
+    )
+    assert first == again
+    assert first != other
