@@ -20,6 +20,7 @@ from ..scene import Scene
 from ..setup import Setup
 from ..stages import Slide, Stages
 from ..walls import Coulomb, Fixed, Roller, Walls
+from . import reference_stones
 
 
 @dataclass(frozen=True)
@@ -119,8 +120,6 @@ def slope(
     walls = _reading(reading).walls
     if name == "soil":
         return Scene(Outline.slope(), soil(reading), cell=cell, walls=walls)
-    from . import reference_stones
-
     return Scene(
         Outline.slope(),
         soil(reading),

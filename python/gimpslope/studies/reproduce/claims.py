@@ -213,13 +213,15 @@ CLAIMS = (
     ),
     Claim(
         "plastic zone",
-        "Slopes with stones have several plastic bands (at 1 s), and the soil one.",
-        _ordered("early_bands", "{:.0f}", STONES, SOIL),
+        "In slopes with stones several plastic bands interlace (here: at 1 s they enclose more "
+        "islands than in the soil slope).",
+        _ordered("early_islands", "{:.0f}", STONES, SOIL),
     ),
     Claim(
         "plastic zone",
-        "The bands go around the stones, which stay elastic (less than 0.1 % of them plastic).",
-        _each("plastic_stone", "{:.2%}", lambda share: share < 1e-3, STONES),
+        "The bands go around the stones (here: a tenth as much of the stones is plastic as of the "
+        "soil, or less).",
+        _each("stone_over_soil", "{:.3f}", lambda ratio: ratio <= 0.1, STONES),
     ),
     Claim(
         "plastic zone",

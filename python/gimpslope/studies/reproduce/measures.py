@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ...analysis import mass_percentile
+from ...analysis import ROUGHNESS_LENGTH, mass_percentile
 from ...run import Run
 from ...snapshot import Snapshot
 
@@ -17,6 +17,8 @@ _FAST = 1.0  # m/s
 _FRONT = 75.0  # % of the mass behind it
 _FAR, _FARTHER = 2.0, 4.0  # m
 _BOTTOM = 2.0  # m
+_STUCK = 1.0  # m from the left side
+_COLUMNS = 4
 
 
 @dataclass(frozen=True)
@@ -35,13 +37,14 @@ class Measures:
         slope's mass
     early_bands, peak_bands, late_bands : connected plastic regions of the soil at 1 s, the peak and
         5 s
+    early_islands, peak_islands, late_islands : what these enclose on all sides
     plastic_soil, plastic_stone : share of the mass with more than 1 % of plastic strain in the end
     bottom_intact : share of the soil that lay in the lowest 2 m and has no such strain in the end
     total, horizontal, vertical : largest displacements in the end, m
     near_share : share of the mass that has moved by less than 2 m in the end
     far_front : share of the mass moved by more than 4 m that ends in the front quarter
     run_out : how far the toe has moved in the end, 99 % of the mass, m
-    roughness : of the surface in the end, mm
+    roughness : of the surface in the end from 1 m beside the left side on, mm
     """
 
     mass: float
@@ -56,6 +59,9 @@ class Measures:
     early_bands: float
     peak_bands: float
     late_bands: float
+    early_islands: float
+    peak_islands: float
+    late_islands: float
     plastic_soil: float
     plastic_stone: float
     bottom_intact: float
@@ -71,6 +77,11 @@ class Measures:
     def deceleration(self) -> float:
         """From the peak to rest, s."""
         return self.rest_time - self.peak_time
+
+    @property
+    def stone_over_soil(self) -> float:
+        """The plastic share of the stones over that of the soil."""
+        return self.plastic_stone / self.plastic_soil
 
     @property
     def sideways(self) -> float:
@@ -100,9 +111,7 @@ def measure(run: Run) -> Measures:
         late_speed=_fastest(late),
         fast_share=_share(peak.speed >= _FAST, peak),
         late_front=np.nan if late is None else _in_front(late, late.speed > _FAST),
-        early_bands=_bands(run, PLASTIC_EARLY),
-        peak_bands=float(len(run.plastic_bands("peak"))),
-        late_bands=_bands(run, PLASTIC_LATE),
+        **_bands(run, early=PLASTIC_EARLY, peak=run.energy.peak.time, late=PLASTIC_LATE),
         plastic_soil=_or_nan(plastic.soil),
         plastic_stone=_or_nan(plastic.stone),
         bottom_intact=float(np.average(~run.plastic_zone()[bottom], weights=mass[bottom])),
@@ -111,8 +120,8 @@ def measure(run: Run) -> Measures:
         vertical=largest.vertical,
         near_share=_share(moved < _FAR, end),
         far_front=_in_front(end, moved > _FARTHER),
-        run_out=run.run_out(percentile=99.0) - run.run_out(0.0, percentile=99.0),
-        roughness=1e3 * run.surface().roughness(),
+        run_out=run.run_out(percentile=99.0),
+        roughness=_roughness(run),
     )
 
 
@@ -124,8 +133,21 @@ def _fastest(state: Snapshot | None) -> float:
     return np.nan if state is None else float(state.speed.max())
 
 
-def _bands(run: Run, time: float) -> float:
-    return np.nan if _reached(run, time) is None else float(len(run.plastic_bands(time)))
+def _bands(run: Run, **moments: float) -> dict[str, float]:
+    """Bands and islands by the names of their moments."""
+    found: dict[str, float] = {}
+    for name, time in moments.items():
+        bands = None if _reached(run, time) is None else run.plastic_bands(time)
+        found[f"{name}_bands"] = np.nan if bands is None else float(len(bands))
+        found[f"{name}_islands"] = np.nan if bands is None else float(len(bands.islands))
+    return found
+
+
+def _roughness(run: Run) -> float:
+    """Of the deposit, without the steep soil that sticks to the left side, mm."""
+    surface = run.surface()
+    deposit = surface.between(_STUCK, surface.x[-1])
+    return 1e3 * deposit.roughness(max(ROUGHNESS_LENGTH, _COLUMNS * surface.width))
 
 
 def _share(which: np.ndarray, state: Snapshot) -> float:
