@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 
 import gimpslope as gs
 
+from ..studies.parallel import RunFailed
 from . import bench, converge, export, info, reproduce, run, verify
 
 _COMMANDS = (run, reproduce, export, verify, converge, bench, info)
@@ -27,7 +28,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
     try:
         return command()
-    except (gs.Diverged, gs.NotSettledError, OSError) as failed:
+    except (gs.Diverged, gs.NotSettledError, RunFailed, OSError) as failed:
         print(f"gimpslope: {failed}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

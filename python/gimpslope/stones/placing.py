@@ -64,9 +64,9 @@ def place(room: Room, areas: FloatArray, rng: np.random.Generator, tries: int) -
     Raises
     ------
     StonesDoNotFit
-        If the stones have more area than the outline, or pushing them apart came to no end.
+        If stones and gaps have more area than the outline, or pushing came to no end.
     """
-    if areas.sum() > room.outline.area:
+    if _cannot_fit(room, areas):
         raise _refusal(room, areas, np.zeros(len(areas), dtype=np.bool_), 0, 0)
     places, placed, tried = _at_random(room, areas, rng, tries)
     if placed.all():
@@ -76,6 +76,21 @@ def place(room: Room, areas: FloatArray, rng: np.random.Generator, tries: int) -
         best = max(placed, free, key=lambda flags: float(areas[flags].sum()))
         raise _refusal(room, areas, best, tried, sweeps)
     return places
+
+
+def _cannot_fit(room: Room, areas: FloatArray) -> bool:
+    """Whether stones grown by half the gap have more area than the outline grown by as much of that
+    as exceeds the margin, in which they lie side by side.
+
+    A convex body of area A and perimeter P grown by t has the area A + P t + pi t2 (Steiner), no
+    polygon has more; its perimeter is 2 pi times its mean reach (Cauchy).
+    """
+    half = room.gap / 2
+    beyond = max(half - room.margin, 0.0)
+    perimeters = 2 * np.pi * room.reaches.mean(axis=1)
+    grown = (areas + perimeters * half + np.pi * half**2).sum()
+    outline = room.outline.polygon
+    return bool(grown > outline.area + outline.length * beyond + np.pi * beyond**2)
 
 
 def _refusal(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import sys
 import time
 from collections.abc import Sequence
 from multiprocessing.process import BaseProcess
@@ -65,11 +66,13 @@ def _start(planned: Planned) -> BaseProcess:
 
 
 def _run(planned: Planned) -> None:
-    """What the process of a run does; the run file says how it ended."""
+    """What the process of a run does."""
     try:
         planned.run(progress=False)
-    except (KeyboardInterrupt, RuntimeError):
+    except KeyboardInterrupt:
         return
+    except Exception as error:
+        print(f"gimpslope: {planned.path}: {error}", file=sys.stderr)
 
 
 def _time_reached(planned: Planned) -> float:
