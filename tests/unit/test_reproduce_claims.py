@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import pytest
 
 from gimpslope.studies.reproduce import claims, sample
-from gimpslope.studies.reproduce.measures import Measures
+from gimpslope.studies.reproduce.measures import FIGURES, Measures
 
 AS_TOLD = {
     "soil": {"peak_energy": 160.0, "peak_time": 1.6, "peak_speed": 3.4, "fast_share": 0.5},
@@ -82,12 +82,7 @@ PAPER = {name: [told(name)] for name in AS_TOLD}
 @pytest.fixture(autouse=True)
 def chance(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every figure varies by 1 % from draw to draw."""
-    figures = {field.name for field in fields(Measures)} | {
-        "deceleration",
-        "sideways",
-        "stone_over_soil",
-    }
-    monkeypatch.setattr(sample, "SPREAD", dict.fromkeys(figures, 0.01))
+    monkeypatch.setattr(sample, "SPREAD", dict.fromkeys(FIGURES, 0.01))
 
 
 def verdicts(runs: claims.Runs) -> dict[str, str]:
@@ -152,3 +147,11 @@ def test_what_was_not_reached_is_not_judged() -> None:
 def test_figures_stand_beside_the_verdict() -> None:
     (_, judgement), *_ = claims.judge(PAPER)
     assert "soil 4.00 s, arbitrary 3.80 s, round 4.10 s, oval 4.00 s" in judgement.figures
+
+
+def test_spread_is_the_deviation_between_draws() -> None:
+    first = [replace(told("round"), peak_energy=value) for value in (90.0, 100.0, 110.0)]
+    second = [replace(told("oval"), peak_energy=value) for value in (40.0, 50.0, 60.0)]
+    found = sample.spread([first, second])
+    assert found["peak_energy"] == pytest.approx(((0.1**2 + 0.2**2) / 2) ** 0.5)
+    assert found["total"] == 0.0 and set(found) == set(FIGURES)

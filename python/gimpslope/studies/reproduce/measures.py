@@ -89,8 +89,17 @@ class Measures:
         return self.horizontal / self.total
 
     def to_dict(self) -> dict[str, float]:
-        """By name."""
-        return {field.name: getattr(self, field.name) for field in fields(self)}
+        """By the names in `FIGURES`."""
+        return {name: getattr(self, name) for name in FIGURES}
+
+
+FIGURES = (
+    *(field.name for field in fields(Measures)),
+    "deceleration",
+    "stone_over_soil",
+    "sideways",
+)
+"""All that is measured."""
 
 
 def measure(run: Run) -> Measures:

@@ -15,6 +15,7 @@ from ..planned import Planned
 from . import report
 from .claims import Claim, Judgement, judge
 from .measures import Measures, measure
+from .sample import LEAST_DRAWS, spread
 
 SEEDS = (1,)
 _DPI = 120
@@ -122,8 +123,8 @@ def study(slopes: Sequence[Slope], *, jobs: int = 1, progress: bool = True) -> l
 
 
 def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
-    """Write a summary (Markdown and HTML), what was measured (JSON), and figures 3 to 8, in a
-    directory of their own for each reading, into a directory."""
+    """Write a summary (Markdown and HTML), what was measured (JSON), and in a directory for each
+    reading figures 3 to 8 and, of three or more draws, their spread (JSON), into a directory."""
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
     for one in studies:
@@ -133,6 +134,11 @@ def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
         for number, figure in figures.figures(shown, paper).items():
             figure.savefig(folder / report.picture(one.reading, number), dpi=_DPI)
     (folder / "figures.json").write_text(plain_data.dumps(_figures(studies)))
+    for one in studies:
+        drawn = [draws for name, draws in one.measures.items() if name != "soil"]
+        if all(len(draws) >= LEAST_DRAWS for draws in drawn):
+            path = folder / one.reading / "spread.json"
+            path.write_text(plain_data.dumps(spread(drawn)))
     text = report.markdown(studies)
     (folder / "summary.md").write_text(text)
     (folder / "summary.html").write_text(report.html(text))

@@ -1,0 +1,128 @@
+"""The whole study: it runs the slopes, keeps what is finished, and writes it down."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+import gimpslope as gs
+from gimpslope import cli
+from gimpslope.studies import parallel, planned, reference, reproduce
+
+SMALL = [
+    *("reproduce", "--cell", "0.2", "--stone-modulus", "3e7", "--duration", "0.6"),
+    *("--reading", "identified", "--quiet"),
+]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A study of short slides with soft stones."""
+    made = tmp_path_factory.mktemp("study") / "small"
+    assert cli.main([*SMALL, "--jobs", "2", "--output", str(made)]) == 0
+    return made
+
+
+def test_runs_are_those_of_the_slopes(folder: Path) -> None:
+    names = {"soil": "soil", **{name: f"{name}_1" for name in ("arbitrary", "round", "oval")}}
+    for slope, file in names.items():
+        run = gs.open(folder / f"identified_{file}.h5")
+        assert run.status == "finished"
+        setup = reference.setup(slope, cell=0.2, stone_modulus=3e7, duration=0.6)
+        assert run.setup == setup
+
+
+def test_figures_and_page(folder: Path) -> None:
+    for number in range(3, 9):
+        assert (folder / "identified" / f"figure_{number}.png").stat().st_size > 10_000
+    page = (folder / "summary.md").read_text()
+    for word in ("9.3", "8.7", "seeds of the stones | 1", "3e+07 Pa", "0.2 m", gs.__version__):
+        assert word in page
+    assert "not reached" in page and "figure_8.png" in page
+    assert page.count("| kinetic energy |") == 6
+    html = (folder / "summary.html").read_text()
+    assert html.count("<table>") == 3 and html.count("<img") == 6
+    measured = json.loads((folder / "figures.json").read_text())["identified"]
+    run = gs.open(folder / "identified_round_1.h5")
+    assert measured["identified_round_1"]["peak_energy"] == run.energy.peak.value / 1e3
+    assert measured["identified_round_1"]["late_speed"] is None
+
+
+def test_finished_runs_are_kept_and_stopped_ones_made_anew(folder: Path, tmp_path: Path) -> None:
+    runs = sorted(folder.glob("*.h5"))
+    made = [run.stat().st_mtime_ns for run in runs]
+    stopped = folder / "identified_oval_1.h5"
+    stopped.write_bytes(stopped.read_bytes())
+    with gs.io.atomic.change(stopped) as file:
+        file.attrs["status"] = "interrupted"
+    assert cli.main([*SMALL, "--output", str(folder)]) == 0
+    changed = [
+        run for run, before in zip(runs, made, strict=True) if run.stat().st_mtime_ns > before
+    ]
+    assert changed == [stopped]
+    assert gs.open(stopped).status == "finished"
+
+
+def test_other_runs_are_not_replaced(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main([*SMALL, "--cell", "0.1", "--output", str(folder)]) == 2
+    assert "identified_soil.h5" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("--jobs 0", "--jobs must be a whole number >= 1, got 0"),
+        ("--seed 1 1", "seeds must be one or more different numbers"),
+        ("--seed -3", "seed must be a whole number >= 0, got -3"),
+        ("--stone-modulus -1", "young"),
+        ("--cell 0", "cell must be"),
+    ],
+)
+def test_refusals(words: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["reproduce", "--output", "never", *words.split()]) == 2
+    assert message in capsys.readouterr().err
+    assert not Path("never").exists()
+
+
+def test_ctrl_c_ends_all_runs_and_keeps_them(tmp_path: Path) -> None:
+    words = ["--cell", "0.2", "--reading", "identified", "--quiet", "--output", "stopped"]
+    command = [sys.executable, "-m", "gimpslope.cli", "reproduce", *words, "--jobs", "2"]
+    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE)
+    first, second = (
+        tmp_path / "stopped" / f"identified_{name}_1.h5" for name in ("arbitrary", "round")
+    )
+    deadline = time.monotonic() + 60
+    while not (first.exists() and second.exists()) and time.monotonic() < deadline:
+        time.sleep(0.1)
+    time.sleep(1.0)
+    os.kill(process.pid, signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert errors.decode() == "gimpslope: interrupted\n"
+    assert [gs.open(path).status for path in (first, second)] == ["interrupted", "interrupted"]
+
+
+def test_a_run_that_fails_is_named_and_the_others_are_finished(tmp_path: Path) -> None:
+    good = reference.setup(cell=0.8, duration=0.05)
+    impatient = gs.Stages(settling=gs.Settling(limit=0.01), slide=gs.Slide(0.05))
+    bad = gs.Setup(good.scene, good.method, impatient)
+    plans = [
+        planned.plan(tmp_path / f"{name}.h5", one) for name, one in (("bad", bad), ("good", good))
+    ]
+    with pytest.raises(parallel.RunFailed, match=r"bad\.h5 .* failed: NotSettledError"):
+        parallel.run_all(plans, jobs=1, progress=False)
+    assert gs.open(tmp_path / "good.h5").status == "finished"
+
+
+def test_readings_and_seeds_are_planned_without_files(tmp_path: Path) -> None:
+    slopes = reproduce.plan(tmp_path / "new", seeds=(1, 2), cell=0.2)
+    assert [slope.reading for slope in slopes] == ["identified"] * 4 + ["literal"] * 4
+    assert [len(slope.planned) for slope in slopes] == [1, 2, 2, 2] * 2
+    assert not (tmp_path / "new").exists()
