@@ -10,11 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import synthetic_run
 from matplotlib.figure import Figure
 
 import gimpslope as gs
 from gimpslope import cli, figures
 from gimpslope.cli import run as run_command
+from gimpslope.io import atomic
 from gimpslope.studies import reference, verify
 from gimpslope.studies.bench import guard
 from gimpslope.studies.verify import bar
@@ -162,6 +164,112 @@ def test_failed_run_has_exit_code_1(
     monkeypatch.setattr(run_command.Simulation, "run", fails)
     assert cli.main(COARSE) == 1
     assert "not at rest" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["arbitrary", "round", "oval"])
+def test_slopes_with_stones(
+    name: str, undrawn: list[Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = f"run {name} --cell 0.2 --duration 0.01 --seed 3 --stone-modulus 1e8 --quiet"
+    assert cli.main(words.split()) == 0
+    run = gs.open(f"{name}.h5")
+    assert run.scene == reference.slope(name, cell=0.2, seed=3, stone_modulus=1e8)
+    assert run.scene.materials[1].young == 1e8
+    assert undrawn[0][2] == reference.PAPER[name]
+    shown = capsys.readouterr().out
+    assert (
+        f", {name}, identified" in shown and f"{reference.PAPER[name]['time_of_peak']:g}" in shown
+    )
+
+
+SCENE = """
+cell = 0.8
+[outline]
+height = 9
+[materials.soil]
+density = 1800
+young = 30e6
+poisson = 0.33
+friction = 22
+cohesion = 1e3
+[materials.stone]
+law = "elastic"
+density = 2400
+young = 60e6
+poisson = 0.2
+[[stones]]
+centre = [3, 3]
+axes = [2, 2]
+[stages.slide]
+duration = 0.1
+"""
+
+
+def test_scene_file_and_its_repetition(
+    undrawn: list[Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("boulder.toml").write_text(SCENE)
+    assert cli.main(["run", "boulder.toml", "--quiet", "--threads", "2"]) == 0
+    first = gs.open("boulder.h5")
+    assert first.setup.scene == gs.load("boulder.toml").scene
+    assert "paper" not in capsys.readouterr().out
+    assert cli.main(["run", "boulder.h5", "--quiet", "--threads", "1"]) == 0
+    assert "repeats boulder.h5 to the last bit" in capsys.readouterr().out
+    again = gs.open("boulder_again.h5")
+    assert again.method.threads == 1
+    np.testing.assert_array_equal(again.final.position, first.final.position)
+
+
+def test_a_repetition_that_differs_says_so(
+    undrawn: list[Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("boulder.toml").write_text(SCENE)
+    assert cli.main(["run", "boulder.toml", "--quiet"]) == 0
+    with atomic.change(Path("boulder.h5")) as file:
+        file["final/position"][0, 0] += 1e-9
+        file.attrs["instruction_set"] = "abacus"
+    assert cli.main(["run", "boulder.h5", "--quiet"]) == 0
+    assert "differs from boulder.h5: instruction set 'abacus' there" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("run clay", "SLOPE must be one of soil, arbitrary, round, oval, a scene file"),
+        ("run missing.toml", "missing.toml"),
+        ("run missing.h5", "missing.h5"),
+        ("run boulder.toml --cell 0.2", "--cell must be left out"),
+        ("run boulder.toml --stone-modulus 1e9", "--stone-modulus must be left out"),
+        ("run soil --seed 3", "--seed must be left out for soil"),
+        ("run soil --stone-modulus 1e9", "--stone-modulus must be left out for soil"),
+        ("run round --seed -1", "seed must be a whole number >= 0, got -1"),
+        ("run round --stone-modulus 0", "young must be"),
+        ("run made.h5 --output made.h5 --overwrite", "not the run to repeat"),
+        ("export missing.h5 --vtu out", "missing.h5"),
+    ],
+)
+def test_what_run_and_export_refuse(
+    words: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    Path("boulder.toml").write_text(SCENE)
+    synthetic_run.write_run(Path("made.h5"), until=0.5)
+    before = sorted(Path().iterdir())
+    assert cli.main(words.split()) == 2
+    assert message in capsys.readouterr().err
+    assert sorted(Path().iterdir()) == before
+
+
+def test_export(capsys: pytest.CaptureFixture[str]) -> None:
+    synthetic_run.write_run(Path("made.h5"), until=0.5)
+    assert cli.main(["export", "made.h5", "--vtu", "out", "--times", "0", "0.5"]) == 0
+    assert "out/made.pvd" in capsys.readouterr().out
+    assert {path.name for path in Path("out").iterdir()} == {
+        "made.pvd",
+        "made_0000.vtu",
+        "made_0001.vtu",
+    }
+    assert cli.main(["export", "made.h5", "--vtu", "out"]) == 1
+    assert "out" in capsys.readouterr().err
 
 
 def test_info(capsys: pytest.CaptureFixture[str]) -> None:

@@ -49,6 +49,12 @@ def add(commands: Commands) -> None:
         "--duration", type=float, default=10.0, metavar="S", help="of the slides, s (default: 10)"
     )
     parser.add_argument(
+        "--time-step",
+        type=float,
+        metavar="S",
+        help="fixed, s; the paper's is 1e-5 (default: by a Courant number of 0.4)",
+    )
+    parser.add_argument(
         "--jobs", type=int, metavar="N", help="runs at a time (default: as many as processors)"
     )
     parser.add_argument("--output", default="study", metavar="DIR", help="(default: %(default)s)")
@@ -69,6 +75,7 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         stone_modulus=options.stone_modulus,
         seeds=options.seed,
         duration=options.duration,
+        time_step=options.time_step,
         overwrite=options.overwrite,
     )
     make_directory("--output", options.output)

@@ -15,8 +15,8 @@ from .measures import FIGURES, Measures
 SPREAD: Mapping[str, float] = json.loads(
     resources.files(__package__).joinpath("spread.json").read_text()
 )
-"""Standard deviation of each figure between draws of one kind of stones, as a share of its mean,
-from `gimpslope reproduce --reading identified --stone-modulus 5e8 --seed 1 2 3 4 5`, which writes it."""
+"""Standard deviation of each figure between draws of one kind of stones, as a share of its mean.
+`gimpslope reproduce --reading identified --stone-modulus 5e8 --seed 1 2 3 4 5` writes the file."""
 
 DEVIATIONS = 2.0
 """A difference counts if it is larger than this many of its standard deviations."""

@@ -56,6 +56,7 @@ def plan(
     stone_modulus: float = reference.STONE_MODULUS,
     seeds: Sequence[int] = SEEDS,
     duration: float = 10.0,
+    time_step: float | None = None,
     overwrite: bool = False,
 ) -> list[Slope]:
     """The runs that the study needs, and those that are there already; writes nothing.
@@ -68,6 +69,7 @@ def plan(
     stone_modulus : Young's modulus of the stones, Pa
     seeds : of the draws of stones, each another one
     duration : of the slides, s
+    time_step : fixed, s; None: a Courant number of 0.4
     overwrite : replace files of those names that hold other runs
 
     Raises
@@ -93,6 +95,7 @@ def plan(
                     duration=duration,
                     seed=seed,
                     stone_modulus=stone_modulus,
+                    time_step=time_step,
                 )
                 drawn = "" if name == "soil" else f"_{seed}"
                 path = Path(directory) / f"{reading}_{name}{drawn}.h5"
