@@ -65,11 +65,13 @@ def difference(first: Sample, second: Sample) -> int:
 
 def spread(kinds: Sequence[Sequence[Measures]]) -> dict[str, float]:
     """Standard deviation of each figure between draws as a share of its mean: the root of the mean
-    square over kinds of stones, of which there are three or more draws each."""
-    shares = []
+    square over kinds of stones, of the draws that have reached it; left out where none has."""
+    shares: dict[str, list[float]] = {name: [] for name in FIGURES}
     for draws in kinds:
-        values = np.array([[one.to_dict()[name] for name in FIGURES] for one in draws])
-        mean, deviation = values.mean(axis=0), values.std(axis=0, ddof=1)
-        shares.append(np.divide(deviation, abs(mean), out=np.zeros_like(mean), where=mean != 0))
-    found = np.sqrt(np.mean(np.square(shares), axis=0))
-    return dict(zip(FIGURES, found.tolist(), strict=True))
+        for name in FIGURES:
+            values = np.array([getattr(one, name) for one in draws])
+            reached = values[np.isfinite(values)]
+            if len(reached) > 1:
+                mean = abs(float(reached.mean()))
+                shares[name].append(float(reached.std(ddof=1)) / mean if mean else 0.0)
+    return {name: math.sqrt(np.mean(np.square(some))) for name, some in shares.items() if some}
