@@ -43,7 +43,7 @@ def add(commands: Commands) -> None:
         nargs="+",
         default=list(reproduce.SEEDS),
         metavar="N",
-        help="of the stones; with three or more their own spread decides claims (default: 1)",
+        help="of the stones; with five or more their own spread decides claims (default: 1)",
     )
     parser.add_argument(
         "--duration", type=float, default=10.0, metavar="S", help="of the slides, s (default: 10)"
@@ -84,8 +84,8 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         studies = reproduce.study(slopes, jobs=jobs, progress=not options.quiet)
         reproduce.write(studies, options.output)
         for reading, verdicts in reproduce.report.counts(studies).items():
-            shown = ", ".join(f"{count} {verdict}" for verdict, count in verdicts.items())
-            print(f"claims, reading {reading}: {shown}")
+            shown = ", ".join(f"{verdict}: {count}" for verdict, count in verdicts.items())
+            print(f"claims of the paper, reading {reading}: {shown}")
         print(f"runs, figures and summary (summary.md, summary.html): {options.output}{os.sep}")
         return 0
 

@@ -5,25 +5,40 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
+import numpy.typing as npt
 
-from ...analysis import ROUGHNESS_LENGTH, mass_percentile
+from ..._check import FloatArray
+from ...analysis import ROUGHNESS_LENGTH, mass_percentile, plastic_zone
 from ...run import Run
 from ...snapshot import Snapshot
 
-EARLY, LATE, PLASTIC_EARLY, PLASTIC_LATE = 0.5, 3.5, 1.0, 5.0
-"""Times of the paper's maps of speed and of the plastic zone, beside that of the peak, s."""
+EARLY, LATE = 0.5, 3.5
+"""Times of the paper's maps of speed, beside that of the peak, s."""
 
-_FAST = 1.0  # m/s
-_FRONT = 75.0  # % of the mass behind it
-_FAR, _FARTHER = 2.0, 4.0  # m
-_BOTTOM = 2.0  # m
+FAST = 1.0
+"""Speed above which a point is fast, m/s."""
+
+NEAR, FAR = 2.0, 4.0
+"""Displacements below which a point has moved little, and above which it has moved far, m."""
+
+BOTTOM = 2.0
+"""Height of the bottom of the slope, m."""
+
+_BANDS = {"early": 1.0, "late": 5.0}  # s, of the paper's maps of the plastic zone
+_BEHIND = 75.0  # % of the mass behind the front
 _STUCK = 1.0  # m from the left side
 _COLUMNS = 4
+_PEAK = ("peak_energy", "peak_time", "peak_speed", "fast_share", "peak_bands")
+_END = (
+    *("plastic_soil", "plastic_stone", "bottom_intact", "total", "horizontal", "vertical"),
+    *("near_share", "far_front", "run_out", "roughness"),
+)
 
 
 @dataclass(frozen=True)
 class Measures:
-    """Figures of one run; NaN for what it has not reached.
+    """Figures of one run; NaN for what it has not reached: those of the peak where the kinetic
+    energy still grows, those of the end where the slope has not come to rest.
 
     Attributes
     ----------
@@ -33,16 +48,16 @@ class Measures:
         s since the trigger
     early_speed, peak_speed, late_speed : of the fastest point at 0.5 s, the peak and 3.5 s, m/s
     fast_share : share of the mass that moves by 1 m/s or more at the peak
-    late_front : share of the mass faster than 1 m/s at 3.5 s that is in the front quarter of the
-        slope's mass
+    late_rear : share of the mass that is faster than 1 m/s at 3.5 s and not in the front quarter
     early_bands, peak_bands, late_bands : connected plastic regions of the soil at 1 s, the peak and
         5 s
-    early_islands, peak_islands, late_islands : what these enclose on all sides
+    early_islands : what these enclose on all sides at 1 s
     plastic_soil, plastic_stone : share of the mass with more than 1 % of plastic strain in the end
     bottom_intact : share of the soil that lay in the lowest 2 m and has no such strain in the end
     total, horizontal, vertical : largest displacements in the end, m
     near_share : share of the mass that has moved by less than 2 m in the end
-    far_front : share of the mass moved by more than 4 m that ends in the front quarter
+    far_front : share of the mass moved by more than 4 m that ends in the front quarter; NaN where
+        nothing has
     run_out : how far the toe has moved in the end, 99 % of the mass, m
     roughness : of the surface in the end from 1 m beside the left side on, mm
     """
@@ -55,13 +70,11 @@ class Measures:
     peak_speed: float
     late_speed: float
     fast_share: float
-    late_front: float
+    late_rear: float
     early_bands: float
     peak_bands: float
     late_bands: float
     early_islands: float
-    peak_islands: float
-    late_islands: float
     plastic_soil: float
     plastic_stone: float
     bottom_intact: float
@@ -103,53 +116,100 @@ FIGURES = (
 
 
 def measure(run: Run) -> Measures:
-    """The figures of a run that has come to its end."""
-    end, peak, phases = run.final, run.state("peak"), run.phases()
-    late, plastic = _reached(run, LATE), run.plastic_share()
-    mass, start = run.points.mass, run.points.position
-    moved = np.linalg.norm(end.displacement, axis=1)
-    bottom = (run.points.stone < 0) & (start[:, 1] < _BOTTOM)
-    largest = run.max_displacement()
+    """The figures of a run."""
+    phases = run.phases()
     return Measures(
-        mass=mass.sum() / 1e3,
-        peak_energy=run.energy.peak.value / 1e3,
-        peak_time=run.energy.peak.time,
-        rest_time=_or_nan(phases.rest),
-        early_speed=_fastest(_reached(run, EARLY)),
-        peak_speed=run.energy.speed_at_peak,
-        late_speed=_fastest(late),
-        fast_share=_share(peak.speed >= _FAST, peak),
-        late_front=np.nan if late is None else _in_front(late, late.speed > _FAST),
-        **_bands(run, early=PLASTIC_EARLY, peak=run.energy.peak.time, late=PLASTIC_LATE),
-        plastic_soil=_or_nan(plastic.soil),
-        plastic_stone=_or_nan(plastic.stone),
-        bottom_intact=float(np.average(~run.plastic_zone()[bottom], weights=mass[bottom])),
-        total=largest.total,
-        horizontal=largest.horizontal,
-        vertical=largest.vertical,
-        near_share=_share(moved < _FAR, end),
-        far_front=_in_front(end, moved > _FARTHER),
-        run_out=run.run_out(percentile=99.0),
-        roughness=_roughness(run),
+        mass=float(run.points.mass.sum()) / 1e3,
+        rest_time=np.nan if phases.rest is None else phases.rest,
+        **_at_times(run),
+        **_at_the_peak(run, reached=phases.peak is not None),
+        **_in_the_end(run, reached=phases.rest is not None),
     )
 
 
-def _reached(run: Run, time: float) -> Snapshot | None:
+def _at_times(run: Run) -> dict[str, float]:
+    """What happens at the times of the paper's maps."""
+    early, late = _state(run, EARLY), _state(run, LATE)
+    bands = {
+        name: None if _state(run, time) is None else run.plastic_bands(time)
+        for name, time in _BANDS.items()
+    }
+    return {
+        "early_speed": np.nan if early is None else float(early.speed.max()),
+        "late_speed": np.nan if late is None else float(late.speed.max()),
+        "late_rear": np.nan if late is None else _share(late, (late.speed > FAST) & ~front(late)),
+        "early_islands": np.nan if bands["early"] is None else float(len(bands["early"].islands)),
+        **{
+            f"{name}_bands": np.nan if found is None else float(len(found))
+            for name, found in bands.items()
+        },
+    }
+
+
+def _at_the_peak(run: Run, *, reached: bool) -> dict[str, float]:
+    if not reached:
+        return dict.fromkeys(_PEAK, np.nan)
+    peak = run.state("peak")
+    found = (
+        run.energy.peak.value / 1e3,
+        run.energy.peak.time,
+        run.energy.speed_at_peak,
+        _share(peak, peak.speed >= FAST),
+        float(len(run.plastic_bands("peak"))),
+    )
+    return dict(zip(_PEAK, found, strict=True))
+
+
+def _in_the_end(run: Run, *, reached: bool) -> dict[str, float]:
+    if not reached:
+        return dict.fromkeys(_END, np.nan)
+    end = run.final
+    soil, stone = run.plastic_share()
+    found = (
+        np.nan if soil is None else soil,
+        np.nan if stone is None else stone,
+        bottom_intact(end),
+        *run.max_displacement(),
+        _share(end, _moved(end) < NEAR),
+        far_front(end),
+        run.run_out(percentile=99.0),
+        _roughness(run),
+    )
+    return dict(zip(_END, found, strict=True))
+
+
+def front(state: Snapshot) -> npt.NDArray[np.bool_]:
+    """Which points are in the front quarter of the mass, shape (n,)."""
+    x = state.position[:, 0]
+    ahead: npt.NDArray[np.bool_] = x >= mass_percentile(x, state.points.mass, _BEHIND)
+    return ahead
+
+
+def bottom_intact(state: Snapshot) -> float:
+    """Share of the soil that lay in the lowest 2 m at the start and is not in the plastic zone."""
+    bottom = (state.points.stone < 0) & (state.points.position[:, 1] < BOTTOM)
+    return float(np.average(~plastic_zone(state)[bottom], weights=state.points.mass[bottom]))
+
+
+def far_front(state: Snapshot) -> float:
+    """Share of the mass moved by more than 4 m that is in the front quarter; NaN without any."""
+    far = _moved(state) > FAR
+    return _share(state, far & front(state)) / _share(state, far) if far.any() else np.nan
+
+
+def _state(run: Run, time: float) -> Snapshot | None:
     return run.snapshot(time) if len(run.times) and time <= run.times[-1] else None
 
 
-def _fastest(state: Snapshot | None) -> float:
-    return np.nan if state is None else float(state.speed.max())
+def _moved(state: Snapshot) -> FloatArray:
+    moved: FloatArray = np.linalg.norm(state.displacement, axis=1)
+    return moved
 
 
-def _bands(run: Run, **moments: float) -> dict[str, float]:
-    """Bands and islands by the names of their moments."""
-    found: dict[str, float] = {}
-    for name, time in moments.items():
-        bands = None if _reached(run, time) is None else run.plastic_bands(time)
-        found[f"{name}_bands"] = np.nan if bands is None else float(len(bands))
-        found[f"{name}_islands"] = np.nan if bands is None else float(len(bands.islands))
-    return found
+def _share(state: Snapshot, which: npt.NDArray[np.bool_]) -> float:
+    """Share of the mass that these points have."""
+    mass = state.points.mass
+    return float(mass[which].sum() / mass.sum())
 
 
 def _roughness(run: Run) -> float:
@@ -157,19 +217,3 @@ def _roughness(run: Run) -> float:
     surface = run.surface()
     deposit = surface.between(_STUCK, surface.x[-1])
     return 1e3 * deposit.roughness(max(ROUGHNESS_LENGTH, _COLUMNS * surface.width))
-
-
-def _share(which: np.ndarray, state: Snapshot) -> float:
-    mass = state.points.mass
-    return float(mass[which].sum() / mass.sum())
-
-
-def _in_front(state: Snapshot, which: np.ndarray) -> float:
-    """Share of the mass of these points that is in the front of the slope; NaN without any."""
-    mass, x = state.points.mass, state.position[:, 0]
-    front = x >= mass_percentile(x, mass, _FRONT)
-    return float(mass[which & front].sum() / mass[which].sum()) if which.any() else np.nan
-
-
-def _or_nan(value: float | None) -> float:
-    return np.nan if value is None else value

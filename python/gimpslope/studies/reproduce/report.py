@@ -10,7 +10,9 @@ import numpy as np
 
 from ...run import Run
 from .. import reference
+from .judging import STONES
 from .measures import Measures
+from .sample import KNOWN, has_own_spread
 
 if TYPE_CHECKING:
     from .study import Study
@@ -56,8 +58,9 @@ def markdown(studies: Sequence[Study]) -> str:
         "## Figures of the paper and of these runs\n",
         _comparison(studies),
         "## Claims of the paper\n",
-        "Where slopes are compared, a difference counts if it is larger than twice what the draw "
-        "of the stones brings about by chance.\n",
+        "What decides must be larger than three times what chance brings about from draw to draw "
+        "of the stones (±: one standard deviation of the mean).\n",
+        *(_chance(one) for one in studies),
         _claims(studies),
     ]
     for one in studies:
@@ -123,6 +126,22 @@ def _settings(studies: Sequence[Study]) -> str:
         ("gimpslope", "; ".join(f"{version} on {kind}" for version, kind in sorted(versions)))
     )
     return _table(("setting", "value"), rows)
+
+
+def settings_of(one: Study) -> str:
+    """In words what the spread between draws depends on."""
+    run = one.runs[STONES[0]][0]
+    modulus = run.scene.materials[-1].young
+    return f"reading {one.reading}, cell {run.scene.cell:g} m, stones of {modulus:g} Pa"
+
+
+def _chance(one: Study) -> str:
+    draws = [one.measures[name] for name in STONES]
+    if has_own_spread(draws):
+        return f"Chance in `{one.reading}`: as these draws show it.\n"
+    here, there = settings_of(one), KNOWN["from"]
+    same = "as here" if here == there else f"while this is {here}"
+    return f"Chance in `{one.reading}`: as known from five draws of each kind ({there}), {same}.\n"
 
 
 def _seed(run: Run) -> str:

@@ -13,9 +13,10 @@ from ...run import Run
 from .. import parallel, plain_data, planned, reference
 from ..planned import Planned
 from . import report
-from .claims import Claim, Judgement, judge
+from .claims import Claim, judge
+from .judging import STONES, Judgement
 from .measures import Measures, measure
-from .sample import LEAST_DRAWS, spread
+from .sample import has_own_spread, spread
 
 SEEDS = (1,)
 _DPI = 120
@@ -127,7 +128,7 @@ def study(slopes: Sequence[Slope], *, jobs: int = 1, progress: bool = True) -> l
 
 def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
     """Write a summary (Markdown and HTML), what was measured (JSON), and in a directory for each
-    reading figures 3 to 8 and, of three or more draws, their spread (JSON), into a directory."""
+    reading figures 3 to 8 and, of enough draws, their spread (JSON), into a directory."""
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
     for one in studies:
@@ -138,10 +139,10 @@ def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
             figure.savefig(folder / report.picture(one.reading, number), dpi=_DPI)
     (folder / "figures.json").write_text(plain_data.dumps(_figures(studies)))
     for one in studies:
-        drawn = [draws for name, draws in one.measures.items() if name != "soil"]
-        if all(len(draws) >= LEAST_DRAWS for draws in drawn):
-            path = folder / one.reading / "spread.json"
-            path.write_text(plain_data.dumps(spread(drawn)))
+        drawn = [one.measures[name] for name in STONES]
+        if has_own_spread(drawn):
+            known = {"from": report.settings_of(one), "spread": spread(drawn)}
+            (folder / one.reading / "spread.json").write_text(plain_data.dumps(known))
     text = report.markdown(studies)
     (folder / "summary.md").write_text(text)
     (folder / "summary.html").write_text(report.html(text))

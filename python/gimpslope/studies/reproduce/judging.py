@@ -1,0 +1,162 @@
+"""How a claim of the paper is judged by the runs: what it compares, and what chance may do to that.
+
+Each part of a claim comes down to margins, numbers that must be positive, with the standard
+deviation that the draw of the stones gives them. A margin decides if it is larger than `DEVIATIONS`
+of these, one way or the other.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from .measures import Measures
+from .sample import Sample, sample, spread_of
+
+Draws = Mapping[str, Sequence[Measures]]
+"""The draws of each slope by its name: soil, arbitrary, round, oval."""
+
+DEVIATIONS = 3.0
+"""By how many standard deviations a margin must differ from nothing. With a spread known from 15
+draws of three kinds (12 degrees of freedom) chance does so in 1 % of all cases, and a claim may
+have half a dozen margins."""
+
+HOLDS, DOES_NOT, NOT_REACHED = "holds", "does not", "not reached"
+
+SOIL, STONES = "soil", ("arbitrary", "round", "oval")
+SLOPES = (SOIL, *STONES)
+
+
+class Judgement(NamedTuple):
+    """A verdict, and the figures from which it follows: "holds", "does not", "not reached", or that
+    one draw (or so many) cannot tell."""
+
+    verdict: str
+    figures: str
+
+
+class _Margin(NamedTuple):
+    value: float
+    deviation: float
+
+
+class _Found(NamedTuple):
+    samples: Mapping[str, Sample]
+    margins: Sequence[_Margin]
+    shown: str
+
+
+Part = Callable[[Draws, Mapping[str, float]], _Found]
+
+
+def judgement(parts: Sequence[Part], draws: Draws) -> Judgement:
+    """The worst that any part of a claim says."""
+    spread = spread_of([draws[name] for name in STONES])
+    found = [part(draws, spread) for part in parts]
+    shown = "; ".join(dict.fromkeys(one.shown for one in found))
+    samples = [one for part in found for one in part.samples.values()]
+    margins = [margin for part in found for margin in part.margins]
+    if any(math.isnan(one.mean) for one in samples):
+        return Judgement(NOT_REACHED, shown)
+    signs = [_sign(margin) for margin in margins]
+    if min(signs) < 0:
+        return Judgement(DOES_NOT, shown)
+    return Judgement(HOLDS if min(signs) > 0 else cannot_tell(samples), shown)
+
+
+def cannot_tell(samples: Iterable[Sample]) -> str:
+    """The verdict of chance over so many draws."""
+    draws = max(one.draws for one in samples)
+    return "one draw cannot tell" if draws <= 1 else f"{draws} draws cannot tell"
+
+
+def ordered(figure: str, form: str, *order: str | Sequence[str]) -> Part:
+    """Each slope, or each of a group, has a larger figure than every one of the next group."""
+    groups = [(group,) if isinstance(group, str) else tuple(group) for group in order]
+
+    def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
+        found = _samples(draws, spread, figure, [name for group in groups for name in group])
+        margins = [
+            _Margin(more.mean - less.mean, math.hypot(more.deviation, less.deviation))
+            for before, after in pairwise(groups)
+            for more in (found[name] for name in before)
+            for less in (found[name] for name in after)
+        ]
+        return _Found(found, margins, _shown(found, form))
+
+    return part
+
+
+def alike(figure: str, form: str, share: float, slopes: Sequence[str]) -> Part:
+    """The slopes differ from their mean by at most a share of it."""
+
+    def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
+        found = _samples(draws, spread, figure, slopes)
+        mean = sum(one.mean for one in found.values()) / len(found)
+        margins = [
+            _Margin(share * mean - abs(one.mean - mean), one.deviation) for one in found.values()
+        ]
+        return _Found(found, margins, _shown(found, form))
+
+    return part
+
+
+def between(
+    figure: str, form: str, low: float, high: float, slopes: Sequence[str] = SLOPES
+) -> Part:
+    """The figure of every one of the slopes is between two ends, which may be infinite."""
+
+    def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
+        found = _samples(draws, spread, figure, slopes)
+        margins = [
+            _Margin(min(one.mean - low, high - one.mean), one.deviation) for one in found.values()
+        ]
+        return _Found(found, margins, _shown(found, form))
+
+    return part
+
+
+def near(figure: str, form: str, value: float, tolerance: float, slopes: Sequence[str]) -> Part:
+    """The figure of every one of the slopes is a value within a tolerance."""
+    return between(figure, form, value - tolerance, value + tolerance, slopes)
+
+
+def ratio(figure: str, form: str, larger: str, smaller: str, value: float, share: float) -> Part:
+    """The figure of one slope is that of another times a value, within a share of it."""
+
+    def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
+        found = _samples(draws, spread, figure, (larger, smaller))
+        above, below = found[larger], found[smaller]
+        here = above.mean / below.mean
+        relative = math.hypot(above.deviation / above.mean, below.deviation / below.mean)
+        margin = _Margin(share * value - abs(here - value), here * relative)
+        return _Found(found, [margin], f"{_shown(found, form)}: {here:.2f}")
+
+    return part
+
+
+def _samples(
+    draws: Draws, spread: Mapping[str, float], figure: str, slopes: Sequence[str]
+) -> dict[str, Sample]:
+    share = spread.get(figure, math.nan)
+    return {name: sample(figure, draws[name], share if name in STONES else 0.0) for name in slopes}
+
+
+def _sign(margin: _Margin) -> int:
+    """1 or -1 for a margin that decides, otherwise, or if its deviation is not known, 0."""
+    if not abs(margin.value) > DEVIATIONS * margin.deviation:
+        return 0
+    return 1 if margin.value > 0 else -1
+
+
+def _shown(found: Mapping[str, Sample], form: str) -> str:
+    return ", ".join(f"{name} {_in_words(one, form)}" for name, one in found.items())
+
+
+def _in_words(one: Sample, form: str) -> str:
+    if math.isnan(one.mean):
+        return NOT_REACHED
+    chance = f" ± {one.deviation / abs(one.mean):.0%}" if one.mean and one.deviation > 0 else ""
+    return form.format(one.mean) + chance
