@@ -11,6 +11,7 @@ from . import _check
 from ._record import Record
 
 _DIGITS = 12
+_ROUNDING = 10.0**-_DIGITS  # s
 
 
 @dataclass(frozen=True)
@@ -46,9 +47,8 @@ class Recording(Record):
     def times(self, duration: float) -> list[float]:
         """Times of the snapshots of a slide of that duration (s), in order, its end included."""
         every = np.arange(0.0, duration, self.snapshot_interval)
-        all_times = np.concatenate([every, self.snapshot_times, [duration]])
-        within = np.unique(np.round(all_times[all_times <= duration], _DIGITS))
-        return [float(time) for time in within]
+        rounded = np.unique(np.round([*every, *self.snapshot_times], _DIGITS))
+        return [*(float(time) for time in rounded if time < duration - _ROUNDING), duration]
 
     def row_time(self, start: float, number: int) -> float:
         """Time of the row of that number in a stage, s: counted, for times that are summed up

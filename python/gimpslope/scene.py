@@ -128,10 +128,9 @@ class Scene(Record):
     @property
     def materials(self) -> tuple[Material, ...]:
         """The materials that `points.material` counts: soil, that of the stones that have none of
-        their own, then theirs, each once."""
+        their own, then theirs, each kind once."""
         own = (stone.material for stone in self._stones)
-        kinds = dict.fromkeys(kind for kind in (self.stone, *own) if kind is not None)
-        return (self.soil, *kinds)
+        return tuple(dict.fromkeys(k for k in (self.soil, self.stone, *own) if k is not None))
 
     @property
     def material_names(self) -> tuple[str, ...]:

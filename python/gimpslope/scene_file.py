@@ -87,23 +87,23 @@ def read(path: str | PathLike[str]) -> Setup:
         raise ValueError(f"{file} must be TOML, got an error: {error}") from None
     try:
         return _setup(given, file.parent)
-    except (TypeError, ValueError, FileNotFoundError) as error:
-        raise type(error)(f"{file}: {error}") from None
+    except (TypeError, ValueError, OSError) as error:
+        raise _placed(f"{file}:", error) from error
 
 
 def _setup(given: _Table, folder: Path) -> Setup:
     _known("the scene file", given, (*_NUMBERS, *_TABLES, *_SECTIONS))
     materials = _materials(given)
     outline, stones, used = _section(given, materials, folder)
-    unused = sorted(set(materials) - used - {"soil", "stone"})
-    if unused:
-        raise ValueError(f"materials must be soil, stone or used by a stone, got {unused}")
+    for_the_rest = {"stone"} if _some_name_none(stones) else set()
+    if unused := sorted(set(materials) - used - for_the_rest - {"soil"}):
+        raise ValueError(f"materials must be of the soil or of stones, got {unused} besides")
     numbers = {name: given[name] for name in _NUMBERS if name in given}
     scene = Scene(
         outline,
         materials["soil"],
         stones=stones,
-        stone=materials.get("stone"),
+        stone=materials.get("stone") if _some_name_none(stones) else None,
         walls=_in("walls", _walls, _table(given, "walls")),
         **numbers,
     )
@@ -115,8 +115,12 @@ def _setup(given: _Table, folder: Path) -> Setup:
     )
 
 
+def _some_name_none(stones: shapes.Stones) -> bool:
+    return any(stone.material is None for stone in stones)
+
+
 def _materials(given: _Table) -> dict[str, Material]:
-    tables = _table(given, "materials")
+    tables = _in("materials", dict, _table(given, "materials"))
     if "soil" not in tables:
         raise ValueError(f"[materials] must have a table soil, got {sorted(tables) or 'none'}")
     return {name: _in(f"materials.{name}", _material, tables[name]) for name in tables}
@@ -140,7 +144,9 @@ def _section(
             return _in(source, partial(_imported, source, materials, folder), given[source])
     if "stones" in given and "draw" in given:
         raise ValueError("stones must be listed or drawn, got both [[stones]] and [draw]")
-    outline = _in("outline", _outline, _table(given, "outline"))
+    if "outline" not in given:
+        raise ValueError("[outline], [image] or [mesh] must say what slides, got none of them")
+    outline = _in("outline", _outline, given["outline"])
     if "draw" in given:
         return outline, *_in("draw", partial(_drawn, outline, materials), given["draw"])
     return outline, *_listed(given.get("stones", []), materials)
@@ -166,7 +172,7 @@ def _listed(
 
 def _stone(materials: Mapping[str, Material], keys: _Table) -> shapes.Stone:
     material = _named(keys.pop("material", None), materials)
-    kind: Callable[..., shapes.Shape] = shapes.Ellipse if "centre" in keys else Outline
+    kind: Callable[..., shapes.Shape] = Outline if "vertices" in keys else shapes.Ellipse
     return shapes.Stone(_made("a stone", kind, keys), material)
 
 
@@ -179,16 +185,17 @@ def _drawn(
         if isinstance(value, dict):
             law = _choice(f"{key}.law", value.pop("law", None), _SIZES)
             keys[key] = _made(f"{key} of law {law.__name__}", law, value)
-    arguments = {"outline": outline, **keys, "material": _named(name, materials)}
-    return _made("draw", draw, arguments), {name} - {None}
+    material = _named(name, materials)
+    return _made(draw.__name__, draw, keys, outline=outline, material=material), {name} - {None}
 
 
 def _imported(
     source: str, materials: Mapping[str, Material], folder: Path, keys: _Table
 ) -> tuple[Outline, shapes.Stones, set[str]]:
-    if "file" not in keys:
-        raise ValueError(f"file must name the {source}, got none")
-    path = folder / keys.pop("file")
+    file = keys.pop("file", None)
+    if not isinstance(file, str):
+        raise ValueError(f"file must name the {source}, got {file!r}")
+    path = folder / file
     names = keys.pop("material", None)
     if keys.get("background") == "none":
         keys["background"] = None
@@ -198,7 +205,7 @@ def _imported(
         material = _named(names, materials)
     used = set(names.values()) if isinstance(names, dict) else {names} - {None}
     load: Callable[..., Any] = shapes.from_image if source == "image" else shapes.from_mesh
-    found = _made(source, load, {source: path, **keys, "material": material})
+    found = _made(load.__name__, load, keys, **{source: path, "material": material})
     return found.outline, found.stones, used
 
 
@@ -242,18 +249,25 @@ def _in(where: str, make: Callable[[_Table], T], table: Any) -> T:
         raise TypeError(f"[{where}] must be a table, got {table!r}")
     try:
         return make(dict(table))
-    except (TypeError, ValueError, FileNotFoundError) as error:
-        raise type(error)(f"[{where}] {error}") from None
+    except (TypeError, ValueError, OSError) as error:
+        raise _placed(f"[{where}]", error) from error
 
 
-def _made(where: str, make: Callable[..., T], keys: _Table) -> T:
-    """make(**keys), once all keys are known and none is missing."""
+def _placed(where: str, error: Exception) -> Exception:
+    """An error of the same kind that says where in the file it is."""
+    kinds = (FileNotFoundError, OSError, TypeError)
+    kind = next((one for one in kinds if isinstance(error, one)), ValueError)
+    return kind(f"{where} {error}")
+
+
+def _made(where: str, make: Callable[..., T], keys: _Table, **bound: Any) -> T:
+    """make(**keys, **bound), once all keys are known, none is missing and none is bound here."""
     parameters = inspect.signature(make).parameters.values()
-    _known(where, keys, [one.name for one in parameters])
+    _known(where, keys, [one.name for one in parameters if one.name not in bound])
     needed = {one.name for one in parameters if one.default is inspect.Parameter.empty}
-    if missing := sorted(needed - set(keys)):
+    if missing := sorted(needed - set(keys) - set(bound)):
         raise ValueError(f"{where} needs {', '.join(map(repr, missing))}, which is missing")
-    return make(**keys)
+    return make(**keys, **bound)
 
 
 def _known(where: str, keys: _Table, known: Any) -> None:

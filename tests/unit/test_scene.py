@@ -222,3 +222,9 @@ def test_round_trip_through_json():
     assert again == scene
     assert hash(again) == hash(scene)
     np.testing.assert_array_equal(again.points.material, scene.points.material)
+
+
+def test_a_stone_of_the_soils_own_material_is_a_stone_but_no_further_material():
+    scene = Scene(BLOCK, SOIL, stones=[INSIDE], stone=SOIL)
+    assert scene.materials == (SOIL,) and scene.material_names == ("soil",)
+    assert not scene.points.material.any() and (scene.points.stone == 0).sum() == 64

@@ -189,7 +189,7 @@ def test_mesh_beside_the_file(tmp_path: Path) -> None:
         (SLOPE + SOIL.replace("cohesion = 1e3", ""), r"\[materials.soil\] .* needs 'cohesion'"),
         (SLOPE + SOIL + "law = 'mohr'", "law must be one of 'drucker_prager', 'elastic'"),
         (SLOPE, r"\[materials\] must have a table soil"),
-        (SLOPE + SOIL + GRANITE, r"materials must be soil, stone or used .* \['granite'\]"),
+        (SLOPE + SOIL + GRANITE, r"materials must be .* got \['granite'\] besides"),
         (SLOPE + SOIL + STONES, r"\[stones\[0\]\] material must be one of 'soil', got 'granite'"),
         (SLOPE + SOIL + STONE + STONES.replace('"granite"', '"stone"') + "colour = 1", "'colour'"),
         (SLOPE + SOIL + "[walls]\nleft = 'glued'", r"\[walls\] left must be one of 'fixed'"),
@@ -198,14 +198,27 @@ def test_mesh_beside_the_file(tmp_path: Path) -> None:
         (SLOPE + SOIL + "[stages.melting]\nramp = 1", "a stage must be one of 'gravity'"),
         (SLOPE + SOIL + "[stages.slide]\nduration = -1", r"duration must be .* got -1"),
         (SLOPE + SOIL + "[draw]\nkind = 'cubes'", r"\[draw\] kind must be one of 'ellipses'"),
-        (SLOPE + SOIL + "[draw]\nkind = 'rounds'\nsize = 1", r"\[draw\] draw has no 'size'"),
-        (SLOPE + SOIL + "[draw]\nkind = 'rounds'\ndiameter = 1", "draw needs 'seed'"),
+        (
+            SLOPE + SOIL + "[draw]\nkind = 'rounds'\nsize = 1",
+            r"\[draw\] rounds has no 'size'; its keys are diameter",
+        ),
+        (SLOPE + SOIL + "[draw]\nkind = 'rounds'\ndiameter = 1", "rounds needs 'seed'"),
         (
             SLOPE + SOIL + "[image]\nfile = 'a.png'",
             r"\[image\] must stand alone, got outline, image",
         ),
         (SOIL + "[image]\nfile = 'a.png'\npixel = 1", "a.png"),
         (SOIL + "[image]\npixel = 1", r"\[image\] file must name the image"),
+        (SOIL + "[image]\nfile = 5\npixel = 1", r"\[image\] file must name the image, got 5"),
+        (SOIL + "[image]\nfile = '.'\npixel = 1", r"\[image\]"),
+        (SOIL + "[image]\nfile = 'a'\nimage = 'b'", "from_image has no 'image'"),
+        (SOIL, r"\[outline\], \[image\] or \[mesh\] must say what slides"),
+        ("materials = 3\n" + SLOPE, r"\[materials\] must be a table, got 3"),
+        (SLOPE + SOIL + STONE, r"got \['stone'\] besides"),
+        (
+            SLOPE + SOIL + STONE + "[draw]\nkind = 'rounds'\ndiameter = 1\ncontent = 0.9\nseed = 1",
+            "stones must fit into the outline, got places for",
+        ),
         (SLOPE + SOIL + "cell", "must be TOML"),
         ("cell = 'wide'\n" + SLOPE + SOIL, "cell must be .* got 'wide'"),
         ("stones = 3\n" + SLOPE + SOIL, r"stones must be a list of tables"),
@@ -215,9 +228,16 @@ def test_mesh_beside_the_file(tmp_path: Path) -> None:
 def test_refusals_name_the_file_the_table_and_the_key(
     text: str, message: str, tmp_path: Path
 ) -> None:
-    with pytest.raises((ValueError, TypeError, FileNotFoundError), match=message) as refusal:
+    with pytest.raises((ValueError, TypeError, OSError), match=message) as refusal:
         setup_of(tmp_path, text)
     assert "scene.toml" in str(refusal.value)
+
+
+def test_the_material_of_the_rest_may_be_named_too(tmp_path: Path) -> None:
+    named = STONES.replace('"granite"', '"stone"')
+    assert setup_of(tmp_path, SLOPE + SOIL + STONE + named).scene.stone == ROCK
+    scene = setup_of(tmp_path, SLOPE + SOIL + STONE + named + 'material = "stone"\n').scene
+    assert scene.stone is None and scene.materials == (SOIL_OF_FILE, ROCK)
 
 
 def test_a_run_gives_its_setup_back(tmp_path: Path) -> None:

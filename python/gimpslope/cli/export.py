@@ -26,6 +26,8 @@ def add(commands: Commands) -> None:
 
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
     run = Run(options.run)
+    for time in options.times or ():
+        run.snapshot(time)
 
     def command() -> int:
         path = vtk.write_vtu_series(

@@ -2,7 +2,8 @@
 
 Root attributes
     format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
-    ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads;
+    ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads,
+    process (machine and number of the one that writes);
     JSON text: scene, method, stages, recording, and at the end of the run summary and timing
     (wall_seconds spent stepping, point_steps).
 /points
@@ -26,6 +27,8 @@ run that is still going may fail and succeeds when tried again; the functions he
 from __future__ import annotations
 
 import json
+import os
+import platform
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -165,6 +168,7 @@ class RunWriter:
                 file.attrs[name] = setup[name]
             file.attrs["instruction_set"] = instruction_set
             file.attrs["threads"] = threads
+            file.attrs["process"] = _this_process()
             energy = file.create_group("energy")
             for name, quantity in self._columns.items():
                 _create_growing(energy, name, quantity, chunk=_ENERGY_CHUNK)
@@ -267,10 +271,10 @@ class RunWriter:
         An error of that thread is raised by the next call of a method that writes; what it was to
         write is still kept then.
         """
-        if self._aside is not None and self._aside.running():
-            return
-        self._wait()
-        self._aside = self._thread.submit(self._write_kept)
+        with uninterrupted():
+            if self._aside is None or self._aside.done():
+                self._wait()
+                self._aside = self._thread.submit(self._write_kept)
 
     def _wait(self) -> None:
         aside, self._aside = self._aside, None
@@ -426,7 +430,39 @@ def _make_room(path: Path, overwrite: bool) -> None:
             f"output must be a new or empty file unless overwrite is set, got {str(path)!r}, "
             "which exists and is not empty"
         )
+    if writer := still_writing(path):
+        raise FileExistsError(
+            f"output must be a file that no run is writing, got {str(path)!r}, which process "
+            f"{writer} is writing"
+        )
     path.open("wb").close()
+
+
+def still_writing(path: Path) -> int | None:
+    """The other process of this machine that is writing a run to the file, by its number.
+
+    None where there is none; also for a file that another machine writes, of which nothing can be
+    told.
+    """
+    try:
+        with h5py.File(path, "r") as file:
+            status, writer = file.attrs.get("status"), str(file.attrs.get("process", ""))
+    except OSError:
+        return None
+    machine, _, number = writer.rpartition(" ")
+    if status != "running" or machine != platform.node() or int(number) == os.getpid():
+        return None
+    try:
+        os.kill(int(number), 0)
+    except ProcessLookupError:
+        return None
+    except PermissionError:
+        pass
+    return int(number)
+
+
+def _this_process() -> str:
+    return f"{platform.node()} {os.getpid()}"
 
 
 def _checked(

@@ -6,8 +6,9 @@ import multiprocessing
 import os
 import signal
 import sys
+import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from multiprocessing.process import BaseProcess
 
 from tqdm import tqdm
@@ -17,6 +18,7 @@ from ..run import Run
 from .planned import Planned
 
 _PAUSE = 0.2  # s
+_PATIENCE = 1.0  # s
 _BAR = "{desc} {percentage:3.0f}%|{bar}| {n:.1f} of {total:.0f} s [{elapsed}<{remaining}]"
 
 
@@ -27,7 +29,9 @@ class RunFailed(RuntimeError):
 def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> list[Run]:
     """Make the runs that are not there yet, at most `jobs` at a time; all of them, in order.
 
-    Ctrl-C stops those that are going, each of which keeps what it has computed.
+    Ctrl-C stops those that are going, each of which keeps what it has computed; so does the end of
+    this process. A script that calls this needs `if __name__ == "__main__":`, for the processes
+    import it.
 
     Raises
     ------
@@ -46,13 +50,10 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
                 going[str(one.path)] = _start(one)
             time.sleep(_PAUSE)
             going = {path: process for path, process in going.items() if process.is_alive()}
-            bar.update(sum(_time_reached(one) for one in waiting) - bar.n)
+            begun = [one for one in waiting if one not in queue]
+            bar.update(max(sum(map(_time_reached, begun)) - bar.n, 0.0))
     except BaseException:
-        for process in going.values():
-            if process.pid is not None and process.is_alive():
-                os.kill(process.pid, signal.SIGINT)
-        for process in going.values():
-            process.join()
+        _stop(going.values())
         raise
     finally:
         bar.close()
@@ -60,19 +61,45 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
 
 
 def _start(planned: Planned) -> BaseProcess:
+    """A process that takes Ctrl-C from when it can answer it."""
     process = multiprocessing.get_context("spawn").Process(target=_run, args=(planned,))
-    process.start()
+    in_main = threading.current_thread() is threading.main_thread()
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main else None
+    try:
+        process.start()
+    finally:
+        if in_main:
+            signal.signal(signal.SIGINT, before or signal.SIG_DFL)
     return process
+
+
+def _stop(processes: Iterable[BaseProcess]) -> None:
+    """Ctrl-C for all, again and again until they have heard it."""
+    for process in processes:
+        while process.pid is not None and process.is_alive():
+            os.kill(process.pid, signal.SIGINT)
+            process.join(_PATIENCE)
 
 
 def _run(planned: Planned) -> None:
     """What the process of a run does."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         planned.run(progress=False)
     except KeyboardInterrupt:
         return
     except Exception as error:
         print(f"gimpslope: {planned.path}: {error}", file=sys.stderr)
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _end_with_parent() -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os.kill(os.getpid(), signal.SIGINT)
 
 
 def _time_reached(planned: Planned) -> float:

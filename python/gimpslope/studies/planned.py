@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 
+from ..io import hdf5
 from ..run import Run
 from ..setup import Setup
 
@@ -37,11 +38,16 @@ def plan(path: Path, setup: Setup, *, overwrite: bool = False) -> Planned:
     """What to do for a run in a file: nothing if it is there, finished, of the same setup but for
     the number of threads, and made by this version.
 
-    A run of the same setup that was stopped is made anew. Raises `FileExistsError` if the file
-    holds anything else and may not be replaced.
+    A run of the same setup that was stopped is made anew. Raises `FileExistsError` if another
+    process is writing the file, or if it holds anything else and may not be replaced.
     """
-    if not path.exists():
+    if not path.exists() or path.stat().st_size == 0:
         return Planned(path, setup)
+    if writer := hdf5.still_writing(path):
+        raise FileExistsError(
+            f"output must be a directory in which nothing else runs, got {str(path)!r}, which "
+            f"process {writer} is writing"
+        )
     if _same(path, setup):
         run = Run(path)
         return Planned(path, setup, run if run.status == "finished" else None)
@@ -57,7 +63,7 @@ def _same(path: Path, setup: Setup) -> bool:
     try:
         run = Run(path)
         there = run.setup
-    except (ValueError, TypeError):
+    except (OSError, KeyError, ValueError, TypeError):
         return False
     same_threads = replace(there.method, threads=setup.method.threads)
     return replace(there, method=same_threads) == setup and run.attributes[
