@@ -9,11 +9,13 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import gimpslope as gs
 from gimpslope import cli
+from gimpslope.io import hdf5
 from gimpslope.studies import parallel, planned, reference, reproduce
 
 SMALL = [
@@ -107,6 +109,60 @@ def test_ctrl_c_ends_all_runs_and_keeps_them(tmp_path: Path) -> None:
     assert process.returncode == 130
     assert errors.decode() == "gimpslope: interrupted\n"
     assert [gs.open(path).status for path in (first, second)] == ["interrupted", "interrupted"]
+
+
+def test_runs_end_with_a_study_that_is_killed_and_nothing_is_written_twice(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["reproduce", "--cell", "0.2", "--reading", "identified", "--quiet", "--jobs", "1"]
+    command = [sys.executable, "-m", "gimpslope.cli", *words, "--output", "killed"]
+    process = subprocess.Popen(command, cwd=tmp_path)
+    path = tmp_path / "killed" / "identified_arbitrary_1.h5"
+    deadline = time.monotonic() + 60
+    while hdf5.still_writing(path) is None and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert cli.main([*words, "--output", str(tmp_path / "killed")]) == 2
+    assert f"process {hdf5.still_writing(path)} is writing" in capsys.readouterr().err
+    with pytest.raises(FileExistsError, match="that no run is writing"):
+        reference.setup(cell=0.8).simulate(path, overwrite=True, progress=False)
+    process.kill()
+    process.wait()
+    while hdf5.still_writing(path) is not None and time.monotonic() < deadline:
+        time.sleep(0.1)
+    assert gs.open(path).status == "interrupted"
+
+
+def test_no_more_than_so_many_runs_at_a_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All are made, and given back in the order of the plan."""
+    going: list[int] = []
+    start = parallel._start
+
+    def counted(one: planned.Planned) -> Any:
+        alive = [process for process in started if process.is_alive()]
+        going.append(len(alive) + 1)
+        started.append(start(one))
+        return started[-1]
+
+    started: list[Any] = []
+    monkeypatch.setattr(parallel, "_start", counted)
+    setup = reference.setup(cell=0.8, duration=0.05)
+    plans = [planned.plan(tmp_path / f"{number}.h5", setup) for number in range(4)]
+    runs = parallel.run_all(plans, jobs=2, progress=False)
+    assert [run.path for run in runs] == [one.path for one in plans]
+    assert going[:2] == [1, 2] and max(going) == 2
+
+
+@pytest.mark.parametrize("content", [b"", b"no HDF5", b"\x89HDF\r\n\x1a\n truncated"])
+def test_files_that_are_no_runs(content: bytes, tmp_path: Path) -> None:
+    """An empty one is what a run killed at its birth leaves."""
+    path, setup = tmp_path / "run.h5", reference.setup(cell=0.8)
+    path.write_bytes(content)
+    if content:
+        with pytest.raises(FileExistsError, match="holds something else"):
+            planned.plan(path, setup)
+    assert planned.plan(path, setup, overwrite=True).found is None
 
 
 def test_a_run_that_fails_is_named_and_the_others_are_finished(tmp_path: Path) -> None:
