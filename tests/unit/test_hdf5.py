@@ -285,7 +285,7 @@ def test_an_error_aside_is_raised_by_the_next_write_and_loses_nothing(
         raise OSError("no space left on device")
 
     with monkeypatch.context() as broken:
-        broken.setattr(hdf5, "change", full)
+        broken.setattr(hdf5.writer, "change", full)
         writer.flush_aside()
         with pytest.raises(OSError, match="no space left"):
             writer.flush()

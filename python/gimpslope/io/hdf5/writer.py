@@ -1,120 +1,38 @@
-"""The run file: HDF5, format 2, readable with h5py alone.
-
-Root attributes
-    format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
-    ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads,
-    process (machine and number of the one that writes);
-    JSON text: scene, method, stages, recording, and at the end of the run summary and timing
-    (wall_seconds spent stepping, point_steps).
-/points
-    the points at the start of the slide, in the order in which they were given; until the slide
-    starts, those of the unloaded slope.
-/energy
-    one column a dataset, all of the same length, rows of all stages; with the columns of the ledger
-    where the method keeps one.
-/snapshots
-    the slide at chosen times, first at its start; axis 0 is time; 32-bit but for the positions.
-/final
-    the same fields once, 64-bit; attribute time.
-/trigger
-    attributes energy_released (J/m), settling_time (s), settling_ratio (kinetic over potential).
-
-Every dataset has the attributes units and description. The file is closed between flushes, and a
-process killed at any moment leaves it readable to the last flush. A reading that meets a write of a
-run that is still going may fail and succeeds when tried again; the functions here do so.
-"""
+"""Writing a run file."""
 
 from __future__ import annotations
 
 import json
-import os
-import platform
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
 from datetime import UTC, datetime
-from functools import wraps
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple, ParamSpec, TypeVar
+from typing import Any
 
 import h5py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .atomic import change, uninterrupted
-
-FORMAT = "gimpslope run"
-FORMAT_VERSION = 2
-STAGES = ("gravity", "settling", "slide")
-STATUSES = ("running", "finished", "interrupted", "failed")
-
-Arrays = dict[str, NDArray[Any]]
-Parameters = ParamSpec("Parameters")
-Found = TypeVar("Found")
-
-SETUP = ("scene", "method", "stages", "recording")
-JSON_ATTRIBUTES = {*SETUP, "summary", "timing"}
+from ..atomic import change, uninterrupted
+from .layout import (
+    ENERGY,
+    FIELDS,
+    FORMAT,
+    FORMAT_VERSION,
+    LEDGER,
+    POINTS,
+    SETUP,
+    SNAPSHOT_FIELDS,
+    STATUSES,
+    Arrays,
+    Quantity,
+)
+from .process import still_writing, this_process
 
 _ENERGY_CHUNK = 1024
 _TIME_CHUNK = 128
-_NO_TIMES = np.empty(0)
-_TRIES = 20
-_PAUSE = 0.01  # s
-
-
-class Quantity(NamedTuple):
-    """What a dataset holds: type, shape of one item (without the points), units, description."""
-
-    dtype: str
-    shape: tuple[int, ...]
-    units: str
-    description: str
-
-
-POINTS = {
-    "position": Quantity("f8", (2,), "m", "position (x, y) at the start of the slide"),
-    "mass": Quantity("f8", (), "kg/m", "mass per metre out of the plane"),
-    "volume": Quantity("f8", (), "m2", "volume per metre out of the plane at the start"),
-    "half_length": Quantity("f8", (2,), "m", "half of the point's width and height"),
-    "material": Quantity("i4", (), "1", "index into the attribute material_names"),
-    "stone": Quantity("i4", (), "1", "number of the stone, -1 in the soil"),
-}
-
-ENERGY = {
-    "stage": Quantity("u1", (), "1", "0 gravity, 1 settling, 2 slide"),
-    "time": Quantity("f8", (), "s", "time; in the slide from the trigger"),
-    "step": Quantity("i8", (), "1", "steps taken since the clock was last set to zero"),
-    "kinetic": Quantity("f8", (), "J/m", "kinetic energy per metre out of the plane"),
-    "potential": Quantity("f8", (), "J/m", "potential energy in gravity, zero at y = 0"),
-    "elastic": Quantity("f8", (), "J/m", "elastic strain energy"),
-    "max_speed": Quantity("f8", (), "m/s", "speed of the fastest point"),
-}
-
-LEDGER = {
-    "plastic": Quantity("f8", (), "J/m", "plastic work, energy released at the trigger included"),
-    "friction": Quantity("f8", (), "J/m", "work of friction along Coulomb walls"),
-    "impact": Quantity("f8", (), "J/m", "taken by walls at once"),
-    "damping": Quantity("f8", (), "J/m", "taken by local and kinetic damping"),
-    "transfer": Quantity("f8", (), "J/m", "lost between points and grid"),
-    "external": Quantity("f8", (), "J/m", "work of body forces and of the ramp of gravity"),
-    "hypoelastic": Quantity("f8", (), "J/m", "taken by the rate form of the elastic law"),
-    "integration": Quantity("f8", (), "J/m", "residue of the finite time step"),
-}
-
-FIELDS = {
-    "position": Quantity("f8", (2,), "m", "position (x, y)"),
-    "velocity": Quantity("f8", (2,), "m/s", "velocity (x, y)"),
-    "stress": Quantity("f8", (4,), "Pa", "stress (xx, yy, zz, xy), tension positive"),
-    "plastic_strain": Quantity("f8", (), "1", "equivalent plastic strain since the trigger"),
-    "volume": Quantity("f8", (), "m2", "volume per metre out of the plane"),
-}
-
-SNAPSHOT_FIELDS = {  # displacements are differences of positions, which keep all their digits
-    name: quantity if name == "position" else quantity._replace(dtype="f4")
-    for name, quantity in FIELDS.items()
-}
 
 
 class RunWriter:
@@ -168,7 +86,7 @@ class RunWriter:
                 file.attrs[name] = setup[name]
             file.attrs["instruction_set"] = instruction_set
             file.attrs["threads"] = threads
-            file.attrs["process"] = _this_process()
+            file.attrs["process"] = this_process()
             energy = file.create_group("energy")
             for name, quantity in self._columns.items():
                 _create_growing(energy, name, quantity, chunk=_ENERGY_CHUNK)
@@ -308,120 +226,6 @@ class RunWriter:
         del self._rows[: len(rows)], self._snapshots[: len(snapshots)]
 
 
-def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:
-    """A reading that meets a write of the run is tried again."""
-
-    @wraps(read)
-    def reading(*arguments: Parameters.args, **names: Parameters.kwargs) -> Found:
-        for _ in range(_TRIES):
-            try:
-                return read(*arguments, **names)
-            except FileNotFoundError:
-                raise
-            except OSError:
-                time.sleep(_PAUSE)
-        return read(*arguments, **names)
-
-    return reading
-
-
-@_patient
-def read_attributes(path: str | PathLike[str]) -> dict[str, Any]:
-    """The root attributes; JSON text is decoded.
-
-    Raises `FileNotFoundError`, or `ValueError` for a file that is not a run file of this format.
-    """
-    with _opened(path) as file:
-        attributes = {name: _plain(value) for name, value in file.attrs.items()}
-    for name in JSON_ATTRIBUTES & attributes.keys():
-        attributes[name] = json.loads(attributes[name])
-    return attributes
-
-
-@_patient
-def read_points(path: str | PathLike[str]) -> Arrays:
-    """The points at the start of the slide, by the names in `POINTS`; none yet: empty mapping."""
-    with _opened(path) as file:
-        return _read_all(file, "points", POINTS)
-
-
-@_patient
-def read_energy(path: str | PathLike[str]) -> Arrays:
-    """The energy rows of all stages, one array (k,) for every name in `ENERGY`."""
-    with _opened(path) as file:
-        columns = _read_all(file, "energy", ENERGY)
-    length = min(len(column) for column in columns.values())
-    return {name: column[:length] for name, column in columns.items()}
-
-
-@_patient
-def read_ledger(path: str | PathLike[str]) -> Arrays:
-    """The ledger of all stages, one array (k,) for every name in `LEDGER`; none kept: empty."""
-    with _opened(path) as file:
-        kept = "plastic" in file["energy"]
-        columns = _read_all(file, "energy", LEDGER) if kept else {}
-    length = min((len(column) for column in columns.values()), default=0)
-    return {name: column[:length] for name, column in columns.items()}
-
-
-@_patient
-def read_snapshot_times(path: str | PathLike[str]) -> NDArray[np.float64]:
-    """Times of the complete snapshots, s, shape (k,)."""
-    with _opened(path) as file:
-        snapshots = file.get("snapshots", {"time": _NO_TIMES})
-        complete = min(len(dataset) for dataset in snapshots.values())
-        times: NDArray[np.float64] = snapshots["time"][:complete]
-        return times
-
-
-@_patient
-def read_snapshot(path: str | PathLike[str], number: int) -> Arrays:
-    """The snapshot of that number, an array for every name in `FIELDS`, in 64 bits."""
-    with _opened(path) as file:
-        return {name: file["snapshots"][name][number].astype(np.float64) for name in FIELDS}
-
-
-@_patient
-def read_final(path: str | PathLike[str]) -> tuple[float, Arrays] | None:
-    """Time (s) and fields, by the names in `FIELDS`, of the final state; None if there is none."""
-    with _opened(path) as file:
-        if "final" not in file:
-            return None
-        return float(file["final"].attrs["time"]), _read_all(file, "final", FIELDS)
-
-
-@_patient
-def read_trigger(path: str | PathLike[str]) -> dict[str, float]:
-    """energy_released (J/m), settling_time (s) and settling_ratio; none yet: empty mapping."""
-    with _opened(path) as file:
-        trigger = file["trigger"].attrs if "trigger" in file else {}
-        return {name: float(trigger[name]) for name in trigger if name != "description"}
-
-
-@contextmanager
-def _opened(path: str | PathLike[str]) -> Iterator[h5py.File]:
-    if not Path(path).is_file():
-        raise FileNotFoundError(f"path must name a run file, got {str(path)!r}, which is no file")
-    if not h5py.is_hdf5(path):
-        raise ValueError(f"path must name a run file, got {str(path)!r}, which is not HDF5")
-    with h5py.File(path, "r") as file:
-        kind, version = file.attrs.get("format"), file.attrs.get("format_version")
-        if kind != FORMAT or version != FORMAT_VERSION:
-            raise ValueError(
-                f"path must name a {FORMAT!r} of format {FORMAT_VERSION}, got {str(path)!r}, "
-                f"which is {kind!r} of format {version}"
-            )
-        yield file
-
-
-def _read_all(file: h5py.File, group: str, quantities: Mapping[str, Quantity]) -> Arrays:
-    return {name: file[group][name][...] for name in quantities} if group in file else {}
-
-
-def _plain(value: Any) -> Any:
-    return value.item() if isinstance(value, np.generic) else value
-
-
 def _make_room(path: Path, overwrite: bool) -> None:
     if path.is_dir() or not path.absolute().parent.is_dir():
         raise ValueError(f"output must be a file in a directory that exists, got {str(path)!r}")
@@ -436,33 +240,6 @@ def _make_room(path: Path, overwrite: bool) -> None:
             f"{writer} is writing"
         )
     path.open("wb").close()
-
-
-def still_writing(path: Path) -> int | None:
-    """The other process of this machine that is writing a run to the file, by its number.
-
-    None where there is none; also for a file that another machine writes, of which nothing can be
-    told.
-    """
-    try:
-        with h5py.File(path, "r") as file:
-            status, writer = file.attrs.get("status"), str(file.attrs.get("process", ""))
-    except OSError:
-        return None
-    machine, _, number = writer.rpartition(" ")
-    if status != "running" or machine != platform.node() or int(number) == os.getpid():
-        return None
-    try:
-        os.kill(int(number), 0)
-    except ProcessLookupError:
-        return None
-    except PermissionError:
-        pass
-    return int(number)
-
-
-def _this_process() -> str:
-    return f"{platform.node()} {os.getpid()}"
 
 
 def _checked(
