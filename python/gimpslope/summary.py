@@ -9,7 +9,9 @@ import numpy.typing as npt
 
 from .energy import Energy
 from .io import hdf5
+from .scene import Scene
 from .snapshot import MaxDisplacement
+from .stones import Stones
 
 if TYPE_CHECKING:
     from .run import Run
@@ -18,6 +20,7 @@ _READABLE = {
     "points": "{:,}",
     "steps": "{:,}",
     "stones": "{:,}",
+    "smallest_gap_in_cells": "{:.2f}",
     "peak_kinetic_energy": "{:,.0f} J/m",
     "time_of_peak": "{:.3f} s",
     "speed_at_peak": "{:.3f} m/s",
@@ -36,7 +39,8 @@ _READABLE = {
 def summarise(run: Run) -> dict[str, float | int | None]:
     """The main results of a run from the data written so far, in SI units.
 
-    Keys: points, steps (of all stages), stones, peak_kinetic_energy (J/m), time_of_peak,
+    Keys: points, steps (of all stages), stones, smallest_gap_in_cells (between two stones; those
+    closer than two cells share nodes and act as one), peak_kinetic_energy (J/m), time_of_peak,
     speed_at_peak (of the fastest point then), max_speed, max_displacement_total, _horizontal and
     _vertical, toe (largest x of a point in the end), final_kinetic_energy (J/m), simulated_time
     (of the slide), wall_seconds (spent stepping) and point_steps_per_second. What the run has not
@@ -46,6 +50,7 @@ def summarise(run: Run) -> dict[str, float | int | None]:
         "points": len(hdf5.read_points(run.path).get("mass", ())),
         "steps": _steps(hdf5.read_energy(run.path)["step"]),
         "stones": len(run.scene.stones),
+        "smallest_gap_in_cells": _smallest_gap(run.scene),
         **_energy_summary(run.energy),
         **_displacement_summary(run),
         **_speed_of_computing(run.attributes.get("timing")),
@@ -56,6 +61,11 @@ def _steps(column: npt.NDArray[np.int64]) -> int:
     """All steps taken, given a count that starts again from zero whenever the clock does."""
     ends = np.append(column[:-1][np.diff(column) < 0], column[-1:])
     return int(ends.sum())
+
+
+def _smallest_gap(scene: Scene) -> float | None:
+    gaps = Stones(scene.stones).gaps()
+    return float(gaps.min()) / scene.cell if len(gaps) > 1 else None
 
 
 def _energy_summary(energy: Energy) -> dict[str, float | None]:

@@ -180,3 +180,16 @@ def test_a_run_before_its_slide(runs: dict[str, Run], tmp_path: Path) -> None:
 )
 def test_panels_are_called_by_the_first_word(name: str, called: str) -> None:
     assert tag(name, 2).strip() == called
+
+
+def test_times_of_the_paper_are_marked_within_the_axes(runs: dict[str, Run]) -> None:
+    """Also where a run ends before them; beyond a given end they are left out."""
+    short = {"B arbitrary": runs["B arbitrary"].energy}
+    paper = {"B arbitrary": {"time_of_peak": 2.0}}
+    whole = kinetic_energies(short, reference=paper)
+    marks = [line for line in whole.lines if line.get_marker() == "^"]
+    assert [mark.get_xdata()[0] for mark in marks] == [2.0]
+    assert whole.get_xlim()[1] >= 2.0
+    close = kinetic_energies(short, until=1.5, reference=paper)
+    assert not [line for line in close.lines if line.get_marker() == "^"]
+    assert close.get_xlim()[1] == 1.5

@@ -85,6 +85,7 @@ def test_other_runs_are_not_replaced(folder: Path, capsys: pytest.CaptureFixture
         ("--seed -3", "seed must be a whole number >= 0, got -3"),
         ("--stone-modulus -1", "young"),
         ("--cell 0", "cell must be"),
+        ("--cell 0.2 --time-step 3e-4", "time_step"),
     ],
 )
 def test_refusals(words: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -19,6 +19,7 @@ from gimpslope.setup import Setup
 from gimpslope.simulation import Simulation
 
 SUMMARY_KEYS = {
+    "smallest_gap_in_cells",
     "points",
     "steps",
     "stones",

@@ -83,12 +83,14 @@ def kinetic_energies(
             ax.plot([time], [value / 1e3], "o", color=f"C{number}", markersize=5)
     _frame(ax)
     ax.set_ylim(bottom=0)
-    for number, name in enumerate(energies):
-        marked = paper[name].get("time_of_peak")
-        if marked is not None:
+    marks = [paper[name].get("time_of_peak", np.nan) for name in energies]
+    shown = (
+        np.nanmax([ax.get_xlim()[1], *marks]) if until is None else _check.positive("until", until)
+    )
+    ax.set_xlim(right=shown)
+    for number, marked in enumerate(marks):
+        if marked <= shown:
             ax.plot([marked], [0], "^", color=f"C{number}", markersize=8, clip_on=False, zorder=3)
-    if until is not None:
-        ax.set_xlim(right=_check.positive("until", until))
     ax.legend(handles=[*ax.get_legend_handles_labels()[0], *_marks(paper)], loc="upper right")
     return ax
 

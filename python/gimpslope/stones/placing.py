@@ -45,11 +45,16 @@ class StonesDoNotFit(ValueError):
         self.tries, self.sweeps = tries, sweeps
 
     def __str__(self) -> str:
+        tried = (
+            f"after {self.tries} random places and {self.sweeps} sweeps of pushing"
+            if self.tries
+            else "without a try, for with their gaps they have more area than there is"
+        )
         return (
             f"the stones must fit into the outline, got places for {self.count} of {self.wanted}, "
             f"which cover {100 * self.content:.3g} of {100 * self.wanted_content:.3g} % of it, "
-            f"with a gap of {self.gap:.4g} m and a margin of {self.margin:.4g} m, after "
-            f"{self.tries} random places and {self.sweeps} sweeps of pushing"
+            f"with a gap of {self.gap:.4g} m and a margin of {self.margin:.4g} m, "
+            f"{tried}"
         )
 
 

@@ -33,6 +33,11 @@ def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[s
         lines.append(
             "The paper swaps the labels of horizontal and vertical; here they are put right."
         )
+    gap = summary["smallest_gap_in_cells"]
+    if gap is not None:
+        lines.append(
+            f"The nearest two stones are {gap:.2f} cells apart; closer than two they act as one."
+        )
     rate = summary["point_steps_per_second"]
     if rate is not None:
         lines.append(

@@ -121,11 +121,17 @@ def _settings(studies: Sequence[Study]) -> str:
             ("Young's modulus of the stones", f"{modulus:g} Pa"),
             ("seeds of the stones", ", ".join(sorted(content, key=int))),
             ("stones", counts),
+            ("smallest gap between stones", _gaps(stones)),
         ]
     rows.append(
         ("gimpslope", "; ".join(f"{version} on {kind}" for version, kind in sorted(versions)))
     )
     return _table(("setting", "value"), rows)
+
+
+def _gaps(runs: Sequence[Run]) -> str:
+    gaps = [gap for run in runs if (gap := run.summary["smallest_gap_in_cells"]) is not None]
+    return f"{min(gaps):.2f} cells; stones closer than two share nodes and act as one"
 
 
 def settings_of(one: Study) -> str:

@@ -10,6 +10,8 @@ from pathlib import Path
 from ... import _check
 from ...figures import study as figures
 from ...run import Run
+from ...setup import Setup
+from ...solver import Solver
 from .. import parallel, plain_data, planned, reference
 from ..planned import Planned
 from . import report
@@ -98,11 +100,18 @@ def plan(
                     stone_modulus=stone_modulus,
                     time_step=time_step,
                 )
+                _check_step(setup)
                 drawn = "" if name == "soil" else f"_{seed}"
                 path = Path(directory) / f"{reading}_{name}{drawn}.h5"
                 draws.append(planned.plan(path, setup, overwrite=overwrite))
             slopes.append(Slope(reading, name, tuple(draws)))
     return slopes
+
+
+def _check_step(setup: Setup) -> None:
+    """Refuse a time step above the stable limit now, and not in a process after hours."""
+    if setup.method.time_step is not None:
+        Solver.of(setup.scene, setup.method)
 
 
 def study(slopes: Sequence[Slope], *, jobs: int = 1, progress: bool = True) -> list[Study]:
