@@ -8,7 +8,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from gimpslope.stones.irregular import outline
+from gimpslope.stones.drawing.irregular import outline
 
 EVERY = {
     "seed": st.integers(0, 2**32),

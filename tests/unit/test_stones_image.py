@@ -10,7 +10,7 @@ from PIL import Image
 
 from gimpslope.materials import Elastic
 from gimpslope.scene import Scene
-from gimpslope.stones.image import from_image
+from gimpslope.stones.sources.image import from_image
 
 SOIL = Elastic(density=1800, young=30e6, poisson=0.3)
 GRANITE = Elastic(density=2600, young=20e9, poisson=0.2)

@@ -8,7 +8,7 @@ import pytest
 
 from gimpslope.materials import Elastic
 from gimpslope.scene import Scene
-from gimpslope.stones.mesh import from_mesh
+from gimpslope.stones.sources.mesh import from_mesh
 
 SOIL = Elastic(density=1800, young=30e6, poisson=0.3)
 GRANITE = Elastic(density=2600, young=20e9, poisson=0.2)

@@ -1,13 +1,13 @@
 """Stones: as data, drawn at random, from an image or from a mesh."""
 
 from .collection import Stones
-from .draw import ellipses, polygons, rounds
+from .drawing.draw import ellipses, polygons, rounds
+from .drawing.placing import StonesDoNotFit
+from .drawing.sizes import Law, LogNormal, PowerLaw, Uniform
 from .ellipse import Ellipse
-from .image import from_image
-from .mesh import from_mesh
-from .placing import StonesDoNotFit
-from .section import Section
-from .sizes import Law, LogNormal, PowerLaw, Uniform
+from .sources.image import from_image
+from .sources.mesh import from_mesh
+from .sources.section import Section
 from .stone import Shape, Stone
 
 __all__ = [

@@ -27,11 +27,11 @@ from .. import _check
 from .._check import FloatArray
 from ..outline import Outline
 from ..stones import Ellipse, Shape, Stones, Uniform
-from ..stones.placing import place
-from ..stones.reach import reach
-from ..stones.room import Room
-from ..stones.rounding import rounded
-from ..stones.shapes import angles, irregular_polygons, moved
+from ..stones.drawing.placing import place
+from ..stones.drawing.reach import reach
+from ..stones.drawing.room import Room
+from ..stones.drawing.rounding import rounded
+from ..stones.drawing.shapes import angles, irregular_polygons, moved
 
 DIAMETER = 0.54
 """Of the rounds, m; the paper's."""

@@ -8,8 +8,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .._check import FloatArray
-from ..outline import Outline
+from ..._check import FloatArray
+from ...outline import Outline
 
 _DIGITS = 7
 

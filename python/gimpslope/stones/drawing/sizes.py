@@ -10,9 +10,9 @@ from statistics import NormalDist
 import numpy as np
 import numpy.typing as npt
 
-from .. import _check
-from .._check import FloatArray
-from .._record import Record
+from ... import _check
+from ..._check import FloatArray
+from ..._record import Record
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from .. import _check
-from .._check import FloatArray
-from ..materials import Material
+from ... import _check
+from ..._check import FloatArray
+from ...materials import Material
 from .labels import Label, LabelImage, read_labels
 from .regions import regions
 from .section import Polygons, Section, materials_by_group, section

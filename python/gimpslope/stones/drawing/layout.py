@@ -9,17 +9,17 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from .. import _check
-from .._check import FloatArray
-from ..materials import Material
-from ..outline import Outline
+from ... import _check
+from ..._check import FloatArray
+from ...materials import Material
+from ...outline import Outline
+from ..collection import Stones
+from ..stone import Shape, Stone
 from . import placing, points
 from .amount import Amount
-from .collection import Stones
 from .reach import reach
 from .room import ROUNDING, Room
 from .shapes import moved
-from .stone import Shape, Stone
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from .. import _check
-from .._check import FloatArray
+from ... import _check
+from ..._check import FloatArray
 
 _SHAKE = 0.3
 _LEAST_RADIUS = 0.55

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .. import _check
-from .._check import FloatArray
+from ... import _check
+from ..._check import FloatArray
 
 Spread = float | tuple[float, float]
 """A number, or the least and the largest of numbers that are all as likely."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .._check import FloatArray
+from ..._check import FloatArray
 from .pushing import pushed_apart
 from .room import Flags, Room
 

@@ -9,11 +9,11 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from .. import _check
-from ..materials import Material
-from ..outline import Outline
-from .collection import Stones
-from .stone import Stone
+from ... import _check
+from ...materials import Material
+from ...outline import Outline
+from ..collection import Stones
+from ..stone import Stone
 
 Polygons = npt.NDArray[np.object_]
 

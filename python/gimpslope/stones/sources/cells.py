@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from .. import _check
+from ... import _check
 from .section import Polygons
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from .. import _check
-from ..materials import Material
+from ... import _check
+from ...materials import Material
 from .cells import GMSH, Cells, Group, read_cells
 from .section import Polygons, Section, materials_by_group, section
 

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import shapely
 
-from .._check import FloatArray
-from ..outline import Outline
+from ..._check import FloatArray
+from ...outline import Outline
 from . import reach
 from .rounding import rounded
 

@@ -14,9 +14,9 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from .._check import FloatArray
-from .ellipse import Ellipse
-from .stone import Shape
+from ..._check import FloatArray
+from ..ellipse import Ellipse
+from ..stone import Shape
 
 _STRIDE = 8
 _N = 32 * _STRIDE

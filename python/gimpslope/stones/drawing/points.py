@@ -7,9 +7,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from .._check import FloatArray
+from ..._check import FloatArray
+from ..stone import Shape
 from .shapes import moved
-from .stone import Shape
 
 SCALE = 0.05
 """Share by which the last stones grow or shrink, at most, to meet a number of points."""

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from .._check import FloatArray
+from ..._check import FloatArray
 from .room import Flags, Near, Room
 from .rounding import rounded
 

@@ -5,17 +5,17 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from .. import _check
-from .._check import FloatArray
-from ..materials import Material
-from ..outline import Outline
+from ... import _check
+from ..._check import FloatArray
+from ...materials import Material
+from ...outline import Outline
+from ..collection import Stones
+from ..ellipse import Ellipse
+from ..rows import is_single
 from . import spread
 from .amount import Amount, Size
-from .collection import Stones
-from .ellipse import Ellipse
 from .layout import Layout
 from .rounding import rounded
-from .rows import is_single
 from .shapes import MOST_ASPECT, angles, irregular_polygons
 from .sizes import Law
 from .spread import Spread

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from .. import _check
-from .._check import FloatArray
-from ..outline import Outline
+from ... import _check
+from ..._check import FloatArray
+from ...outline import Outline
 from .rounding import rounded
 from .sizes import Law
 

@@ -7,14 +7,14 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from .._check import FloatArray
-from ..outline import Outline
+from ..._check import FloatArray
+from ...outline import Outline
+from ..ellipse import Ellipse
+from ..rows import for_each
+from ..stone import Shape
 from . import irregular, spread
-from .ellipse import Ellipse
 from .rounding import rounded
-from .rows import for_each
 from .spread import Spread
-from .stone import Shape
 
 MOST_ASPECT = 100.0
 """Beyond this a stone is a needle, and distances that err to the safe side err too much."""
