@@ -6,8 +6,9 @@ import argparse
 import os
 from collections.abc import Callable
 
-from ..studies import convergence, reference
+from ..studies import convergence
 from .commands import Commands
+from .options import add_readings
 from .paths import make_directory
 
 
@@ -17,13 +18,7 @@ def add(commands: Commands) -> None:
         "converge", help="run slope A on finer and finer grids; finished runs are taken as they are"
     )
     parser.set_defaults(prepare=_prepare)
-    parser.add_argument(
-        "--reading",
-        nargs="+",
-        choices=list(reference.READINGS),
-        default=list(reference.READINGS),
-        help="(default: both)",
-    )
+    add_readings(parser)
     parser.add_argument(
         "--cells",
         type=float,

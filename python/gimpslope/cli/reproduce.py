@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from ..studies import reference, reproduce
 from .commands import Commands
+from .options import add_readings
 from .paths import make_directory
 
 
@@ -20,13 +21,7 @@ def add(commands: Commands) -> None:
         "stopped goes on with the runs that are missing.",
     )
     parser.set_defaults(prepare=_prepare)
-    parser.add_argument(
-        "--reading",
-        nargs="+",
-        choices=list(reference.READINGS),
-        default=list(reference.READINGS),
-        help="(default: both)",
-    )
+    add_readings(parser)
     parser.add_argument(
         "--cell", type=float, default=0.1, metavar="H", help="m (default: %(default)s)"
     )
