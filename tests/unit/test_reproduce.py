@@ -112,6 +112,20 @@ def test_ctrl_c_ends_all_runs_and_keeps_them(tmp_path: Path) -> None:
     assert [gs.open(path).status for path in (first, second)] == ["interrupted", "interrupted"]
 
 
+def test_ctrl_c_is_not_lost_where_python_ignores_exceptions() -> None:
+    """In a finaliser it would be an exception that nobody sees."""
+
+    class Callback:
+        def __del__(self) -> None:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    before = signal.getsignal(signal.SIGINT)
+    with parallel._interrupts() as came:
+        Callback()
+        assert came == [signal.SIGINT]
+    assert signal.getsignal(signal.SIGINT) is before
+
+
 def test_runs_end_with_a_study_that_is_killed_and_nothing_is_written_twice(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -179,7 +193,7 @@ def test_a_run_that_fails_is_named_and_the_others_are_finished(tmp_path: Path) -
 
 
 def test_readings_and_seeds_are_planned_without_files(tmp_path: Path) -> None:
-    slopes = reproduce.plan(tmp_path / "new", seeds=(1, 2), cell=0.2)
+    slopes = reproduce.plan(tmp_path / "new", seeds=(1, 2), cell=0.2).slopes
     assert [slope.reading for slope in slopes] == ["identified"] * 4 + ["literal"] * 4
     assert [len(slope.planned) for slope in slopes] == [1, 2, 2, 2] * 2
     assert not (tmp_path / "new").exists()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -64,13 +65,21 @@ PAPER = {name: [told(name)] for name in AS_TOLD}
 
 
 @pytest.fixture(autouse=True)
-def chance(monkeypatch: pytest.MonkeyPatch) -> None:
+def one_per_cent(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every figure varies by 1 % from draw to draw."""
     monkeypatch.setattr(sample, "KNOWN", {"spread": dict.fromkeys(FIGURES, 0.01), "from": ""})
 
 
 def verdicts(runs: judging.Draws) -> dict[str, str]:
-    return {claim.text: judgement.verdict for claim, judgement in claims.judge(runs)}
+    return {claim.text: judgement.verdict for claim, judgement in claims.judge(runs, chance(runs))}
+
+
+def chance(runs: judging.Draws) -> Mapping[str, float]:
+    return sample.spread_of([runs[name] for name in judging.STONES])
+
+
+def verdict(part: judging.Part, runs: judging.Draws) -> str:
+    return judging.judgement([part], runs, chance(runs)).verdict
 
 
 def test_the_paper_holds_what_it_claims(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -92,7 +101,7 @@ def test_runs_that_are_all_like_the_soil_contradict_comparisons() -> None:
 
 
 @pytest.mark.parametrize(
-    ("oval", "verdict"),
+    ("oval", "found"),
     [
         (45.0, "holds"),
         (48.5, "one draw cannot tell"),
@@ -100,29 +109,29 @@ def test_runs_that_are_all_like_the_soil_contradict_comparisons() -> None:
         (55.0, "does not"),
     ],
 )
-def test_chance_decides_between_slopes_with_stones(oval: float, verdict: str) -> None:
+def test_chance_decides_between_slopes_with_stones(oval: float, found: str) -> None:
     """50 and 48.5 kJ/m differ by less than three times 1 % of both together, 2.1 kJ/m."""
     runs = PAPER | {"oval": [replace(PAPER["oval"][0], peak_energy=oval)]}
     peak = "The soil slope has the highest peak, then arbitrary, round and oval stones."
-    assert verdicts(runs)[peak] == verdict
+    assert verdicts(runs)[peak] == found
 
 
 def test_chance_counts_against_numbers_too() -> None:
     """8.7 m within 0.2 m; three deviations of 1 % are 0.26 m."""
     part = judging.near("total", "{:.2f} m", 8.7, 0.2, ("arbitrary",))
     soil = judging.near("total", "{:.2f} m", 8.7, 0.2, ("soil",))
-    for total, verdict in (
+    for total, found in (
         (8.7, "one draw cannot tell"),
         (8.45, "one draw cannot tell"),
         (8.0, "does not"),
     ):
         runs = PAPER | {name: [replace(told(name), total=total)] for name in ("arbitrary", "soil")}
-        assert judging.judgement([part], runs).verdict == verdict
-        assert judging.judgement([soil], runs).verdict == ("holds" if total == 8.7 else "does not")
+        assert verdict(part, runs) == found
+        assert verdict(soil, runs) == ("holds" if total == 8.7 else "does not")
     twice = judging.ratio("peak_energy", "{:g}", "soil", "arbitrary", 2.5, 0.15)
-    for energy, verdict in ((64.0, "holds"), (56.0, "one draw cannot tell"), (50.0, "does not")):
+    for energy, found in ((64.0, "holds"), (56.0, "one draw cannot tell"), (50.0, "does not")):
         runs = PAPER | {"arbitrary": [replace(told("arbitrary"), peak_energy=energy)]}
-        assert judging.judgement([twice], runs).verdict == verdict
+        assert verdict(twice, runs) == found
 
 
 def test_five_draws_have_a_spread_of_their_own_and_fewer_do_not() -> None:
@@ -139,13 +148,13 @@ def test_five_draws_have_a_spread_of_their_own_and_fewer_do_not() -> None:
     assert sample.spread_of([draws(name, 4) for name in judging.STONES])["peak_energy"] == 0.01
     runs = PAPER | {name: draws(name, 5) for name in judging.STONES}
     peak = judging.ordered("peak_energy", "{:g}", *judging.STONES)
-    assert judging.judgement([peak], runs).verdict == "5 draws cannot tell"
+    assert verdict(peak, runs) == "5 draws cannot tell"
 
 
 def test_a_figure_of_unknown_spread_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sample, "KNOWN", {"spread": {}, "from": ""})
     peak = judging.ordered("peak_energy", "{:g}", *judging.STONES)
-    assert judging.judgement([peak], PAPER).verdict == "one draw cannot tell"
+    assert verdict(peak, PAPER) == "one draw cannot tell"
 
 
 def test_the_known_spread_has_every_figure() -> None:
@@ -164,7 +173,7 @@ def test_what_was_not_reached_is_not_judged() -> None:
 
 
 def test_figures_stand_beside_the_verdict() -> None:
-    (_, judgement), *_ = claims.judge(PAPER)
+    (_, judgement), *_ = claims.judge(PAPER, chance(PAPER))
     assert judgement.figures == (
         "soil 4.00 s, arbitrary 3.80 s ± 1%, round 4.10 s ± 1%, oval 4.00 s ± 1%"
     )

@@ -23,7 +23,11 @@ def add(commands: Commands) -> None:
     parser.set_defaults(prepare=_prepare)
     add_readings(parser)
     parser.add_argument(
-        "--cell", type=float, default=0.1, metavar="H", help="m (default: %(default)s)"
+        "--cell",
+        type=float,
+        default=reproduce.CELL,
+        metavar="H",
+        help="m (default: %(default)s)",
     )
     parser.add_argument(
         "--stone-modulus",
@@ -50,6 +54,22 @@ def add(commands: Commands) -> None:
         help="fixed, s; the paper's is 1e-5 (default: by a Courant number of 0.4)",
     )
     parser.add_argument(
+        "--convergence",
+        nargs="*",
+        choices=list(reference.SLOPES),
+        metavar="SLOPE",
+        help="run slopes on several grids too, with the first two seeds, and say which claims "
+        f"survive refinement (of no name: {' and '.join(reproduce.REFINED)})",
+    )
+    parser.add_argument(
+        "--cells",
+        type=float,
+        nargs="+",
+        metavar="H",
+        help="of --convergence, m, each half of the one before "
+        f"(default: {' '.join(map(str, reproduce.CELLS))})",
+    )
+    parser.add_argument(
         "--jobs", type=int, metavar="N", help="runs at a time (default: as many as processors)"
     )
     parser.add_argument("--output", default="study", metavar="DIR", help="(default: %(default)s)")
@@ -63,7 +83,10 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
     jobs = (os.cpu_count() or 1) if options.jobs is None else options.jobs
     if jobs < 1:
         raise ValueError(f"--jobs must be a whole number >= 1, got {jobs}")
-    slopes = reproduce.plan(
+    if options.cells is not None and options.convergence is None:
+        raise ValueError(f"--cells must be given with --convergence, got {options.cells} alone")
+    none_named = options.convergence == []
+    plan = reproduce.plan(
         options.output,
         readings=list(dict.fromkeys(options.reading)),
         cell=options.cell,
@@ -71,12 +94,14 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         seeds=options.seed,
         duration=options.duration,
         time_step=options.time_step,
+        refined=reproduce.REFINED if none_named else options.convergence or (),
+        cells=options.cells or reproduce.CELLS,
         overwrite=options.overwrite,
     )
     make_directory("--output", options.output)
 
     def command() -> int:
-        studies = reproduce.study(slopes, jobs=jobs, progress=not options.quiet)
+        studies = reproduce.study(plan, jobs=jobs, progress=not options.quiet)
         reproduce.write(studies, options.output)
         for reading, verdicts in reproduce.report.counts(studies).items():
             shown = ", ".join(f"{verdict}: {count}" for verdict, count in verdicts.items())

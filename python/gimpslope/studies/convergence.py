@@ -10,7 +10,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
-from itertools import pairwise
 from os import PathLike
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from ..recording import Recording
 from ..run import Run
 from . import plain_data, planned, reference
 from .planned import Planned
-from .richardson import Extrapolation, extrapolate
+from .richardson import Extrapolation, check_cells, extrapolate
 
 CELLS = (0.4, 0.2, 0.1, 0.05)
 DURATION = 10.0  # s
@@ -98,7 +97,7 @@ def plan(
     """
     duration = _check.positive("duration", duration)
     grids = []
-    for cell in _check_cells(cells):
+    for cell in check_cells(cells):
         setup = reference.setup(reading=reading, cell=cell, duration=duration, threads=threads)
         setup = replace(setup, recording=Recording(snapshot_interval=duration))
         path = Path(directory) / f"soil_{reading}_{cell:g}.h5"
@@ -122,14 +121,6 @@ def converge(grids: Sequence[Planned], *, progress: bool = True) -> Convergence:
             for values in [tuple(one[title, unit] for one in measured)]
         ),
     )
-
-
-def _check_cells(cells: Sequence[float]) -> tuple[float, ...]:
-    """The cells as numbers; `ValueError` unless there are three, each half of the one before."""
-    grids = tuple(_check.positive("cells", cell) for cell in cells)
-    if len(grids) < 3 or not all(math.isclose(a, 2 * b) for a, b in pairwise(grids)):
-        raise ValueError(f"cells must be three or more, each half of the one before, got {grids}")
-    return grids
 
 
 def _measure(run: Run) -> dict[tuple[str, str], float]:

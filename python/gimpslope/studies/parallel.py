@@ -8,7 +8,8 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from multiprocessing.process import BaseProcess
 
 from tqdm import tqdm
@@ -44,14 +45,17 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
     bar = tqdm(total=total, desc="slides", bar_format=_BAR, disable=not progress)
     try:
         queue = list(waiting)
-        while queue or going:
-            while queue and len(going) < jobs:
-                one = queue.pop(0)
-                going[str(one.path)] = _start(one)
-            time.sleep(_PAUSE)
-            going = {path: process for path, process in going.items() if process.is_alive()}
-            begun = [one for one in waiting if one not in queue]
-            bar.update(max(sum(map(_time_reached, begun)) - bar.n, 0.0))
+        with _interrupts() as interrupts:
+            while queue or going:
+                while queue and len(going) < jobs:
+                    one = queue.pop(0)
+                    going[str(one.path)] = _start(one)
+                time.sleep(_PAUSE)
+                going = {path: process for path, process in going.items() if process.is_alive()}
+                begun = [one for one in waiting if one not in queue]
+                bar.update(max(sum(map(_time_reached, begun)) - bar.n, 0.0))
+                if interrupts:
+                    raise KeyboardInterrupt
     except BaseException:
         _stop(going.values())
         raise
@@ -60,16 +64,29 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
     return [_finished(one) for one in planned]
 
 
+@contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """The Ctrl-C that came, to be looked at in good time: as an exception one is lost where Python
+    ignores those, as in a callback of HDF5."""
+    came: list[int] = []
+    if threading.current_thread() is not threading.main_thread():
+        yield came
+        return
+    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
+    try:
+        yield came
+    finally:
+        signal.signal(signal.SIGINT, before or signal.SIG_DFL)
+
+
 def _start(planned: Planned) -> BaseProcess:
-    """A process that takes Ctrl-C from when it can answer it."""
+    """A process in which Ctrl-C waits until it can answer it."""
     process = multiprocessing.get_context("spawn").Process(target=_run, args=(planned,))
-    in_main = threading.current_thread() is threading.main_thread()
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN) if in_main else None
+    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         process.start()
     finally:
-        if in_main:
-            signal.signal(signal.SIGINT, before or signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     return process
 
 
@@ -86,6 +103,7 @@ def _run(planned: Planned) -> None:
     signal.signal(signal.SIGINT, signal.default_int_handler)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
         planned.run(progress=False)
     except KeyboardInterrupt:
         return

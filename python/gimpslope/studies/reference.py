@@ -181,6 +181,11 @@ def setup(
     )
 
 
+def title(name: str) -> str:
+    """A slope as the paper names it and we do: "A soil", "B arbitrary" and so on."""
+    return f"{SLOPES[name]} {name}"
+
+
 def reading_of(scene: Scene) -> str:
     """The name of the reading whose walls and cone a scene of the study has.
 

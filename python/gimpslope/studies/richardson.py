@@ -15,6 +15,8 @@ from typing import Literal
 
 import numpy as np
 
+from .. import _check
+
 Behaviour = Literal["converges", "order not settled", "oscillates", "diverges"]
 
 _TRUSTED = (0.5, 2.1)
@@ -41,6 +43,15 @@ class Extrapolation:
     limit: float
     uncertainty: float
     behaviour: Behaviour
+
+
+def check_cells(cells: Sequence[float]) -> tuple[float, ...]:
+    """Sides of cells as numbers; raises `TypeError` or `ValueError` unless there are three or more,
+    each half of the one before."""
+    grids = tuple(_check.positive("cells", cell) for cell in cells)
+    if len(grids) < 3 or not all(math.isclose(a, 2 * b) for a, b in pairwise(grids)):
+        raise ValueError(f"cells must be three or more, each half of the one before, got {grids}")
+    return grids
 
 
 def extrapolate(values: Sequence[float]) -> Extrapolation:

@@ -7,6 +7,7 @@ given one here, said in brackets.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from .. import reference
@@ -39,9 +40,10 @@ class Claim(NamedTuple):
     parts: tuple[Part, ...]
 
 
-def judge(draws: Draws) -> list[tuple[Claim, Judgement]]:
-    """Every claim with its judgement, in the order of the paper."""
-    return [(claim, judgement(claim.parts, draws)) for claim in CLAIMS]
+def judge(draws: Draws, spread: Mapping[str, float]) -> list[tuple[Claim, Judgement]]:
+    """Every claim with its judgement, in the order of the paper, as far as it is about the slopes
+    there are; `spread`: the share by which chance moves each figure from draw to draw."""
+    return [(claim, judgement(claim.parts, draws, spread)) for claim in CLAIMS]
 
 
 CLAIMS = (

@@ -13,10 +13,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 from .measures import Measures
-from .sample import Sample, sample, spread_of
+from .sample import Sample, sample
 
 Draws = Mapping[str, Sequence[Measures]]
-"""The draws of each slope by its name: soil, arbitrary, round, oval."""
+"""The draws of each slope by its name: soil, arbitrary, round, oval, or some of them."""
 
 DEVIATIONS = 3.0
 """By how many standard deviations a margin must differ from nothing. With a spread known from 15
@@ -24,14 +24,16 @@ draws of three kinds (12 degrees of freedom) chance does so in 1 % of all cases,
 have half a dozen margins."""
 
 HOLDS, DOES_NOT, NOT_REACHED = "holds", "does not", "not reached"
+NOT_RUN = "not run"
+"""The verdict on a claim that compares none of the slopes there are."""
 
 SOIL, STONES = "soil", ("arbitrary", "round", "oval")
 SLOPES = (SOIL, *STONES)
 
 
 class Judgement(NamedTuple):
-    """A verdict, and the figures from which it follows: "holds", "does not", "not reached", or that
-    one draw (or so many) cannot tell."""
+    """A verdict, and the figures from which it follows: "holds", "does not", "not reached", that
+    one draw (or so many) cannot tell, or "not run"."""
 
     verdict: str
     figures: str
@@ -51,10 +53,12 @@ class _Found(NamedTuple):
 Part = Callable[[Draws, Mapping[str, float]], _Found]
 
 
-def judgement(parts: Sequence[Part], draws: Draws) -> Judgement:
-    """The worst that any part of a claim says."""
-    spread = spread_of([draws[name] for name in STONES])
-    found = [part(draws, spread) for part in parts]
+def judgement(parts: Sequence[Part], draws: Draws, spread: Mapping[str, float]) -> Judgement:
+    """The worst that any part of a claim says of the slopes there are, where chance moves each
+    figure by a share of it from draw to draw."""
+    found = [one for part in parts if (one := part(draws, spread)).margins]
+    if not found:
+        return Judgement(NOT_RUN, "")
     shown = "; ".join(dict.fromkeys(one.shown for one in found))
     samples = [one for part in found for one in part.samples.values()]
     margins = [margin for part in found for margin in part.margins]
@@ -77,10 +81,11 @@ def ordered(figure: str, form: str, *order: str | Sequence[str]) -> Part:
     groups = [(group,) if isinstance(group, str) else tuple(group) for group in order]
 
     def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
-        found = _samples(draws, spread, figure, [name for group in groups for name in group])
+        there = [kept for group in groups if (kept := [name for name in group if name in draws])]
+        found = _samples(draws, spread, figure, [name for group in there for name in group])
         margins = [
             _Margin(more.mean - less.mean, math.hypot(more.deviation, less.deviation))
-            for before, after in pairwise(groups)
+            for before, after in pairwise(there)
             for more in (found[name] for name in before)
             for less in (found[name] for name in after)
         ]
@@ -94,6 +99,8 @@ def alike(figure: str, form: str, share: float, slopes: Sequence[str]) -> Part:
 
     def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
         found = _samples(draws, spread, figure, slopes)
+        if len(found) < 2:
+            return _Found(found, [], "")
         mean = sum(one.mean for one in found.values()) / len(found)
         margins = [
             _Margin(share * mean - abs(one.mean - mean), one.deviation) for one in found.values()
@@ -128,6 +135,8 @@ def ratio(figure: str, form: str, larger: str, smaller: str, value: float, share
 
     def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
         found = _samples(draws, spread, figure, (larger, smaller))
+        if len(found) < 2:
+            return _Found(found, [], "")
         above, below = found[larger], found[smaller]
         here = above.mean / below.mean
         relative = math.hypot(above.deviation / above.mean, below.deviation / below.mean)
@@ -141,7 +150,11 @@ def _samples(
     draws: Draws, spread: Mapping[str, float], figure: str, slopes: Sequence[str]
 ) -> dict[str, Sample]:
     share = spread.get(figure, math.nan)
-    return {name: sample(figure, draws[name], share if name in STONES else 0.0) for name in slopes}
+    return {
+        name: sample(figure, draws[name], share if name in STONES else 0.0)
+        for name in slopes
+        if name in draws
+    }
 
 
 def _sign(margin: _Margin) -> int:

@@ -10,9 +10,9 @@ import numpy as np
 
 from ...run import Run
 from .. import reference
-from .judging import STONES
-from .measures import Measures
+from .judging import SOIL, STONES
 from .sample import KNOWN, has_own_spread
+from .tables import claims, comparison, grids, table
 
 if TYPE_CHECKING:
     from .study import Study
@@ -25,20 +25,6 @@ _FIGURES = {
     7: "displacement and shape in the end",
     8: "largest displacements",
 }
-_ROWS = (
-    ("peak_time", "time_of_peak", "time of peak kinetic energy, s", 2),
-    ("peak_energy", None, "peak kinetic energy, kJ/m", 1),
-    ("peak_speed", "speed_at_peak", "fastest point at the peak, m/s", 2),
-    ("rest_time", None, "at rest after, s", 2),
-    ("total", "max_displacement_total", "largest displacement, m", 2),
-    ("horizontal", "max_displacement_horizontal", "horizontal, m", 2),
-    ("vertical", "max_displacement_vertical", "vertical, m", 2),
-    ("run_out", None, "run-out of 99 % of the mass, m", 2),
-    ("plastic_soil", None, "share of the soil that is plastic", 3),
-    ("peak_bands", None, "plastic bands at the peak", 0),
-    ("roughness", None, "roughness of the surface, mm", 0),
-)
-_LOWER_BOUNDS = {("soil", "speed_at_peak")}  # of this the paper says "exceeding"
 _STYLE = (
     "body{font-family:sans-serif;max-width:70em;margin:2em auto;padding:0 1em;line-height:1.4}"
     "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .6em;"
@@ -56,13 +42,23 @@ def markdown(studies: Sequence[Study]) -> str:
         "## Settings\n",
         _settings(studies),
         "## Figures of the paper and of these runs\n",
-        _comparison(studies),
+        comparison(studies),
         "## Claims of the paper\n",
         "What decides must be larger than three times what chance brings about from draw to draw "
         "of the stones (±: one standard deviation of the mean).\n",
         *(_chance(one) for one in studies),
-        _claims(studies),
+        claims(studies),
     ]
+    for one in studies:
+        if one.refinement:
+            parts += [
+                f"## How the answer depends on the cell, reading `{one.reading}`\n",
+                "In one velocity field stones closer than two cells act as one, and each acts "
+                "about a cell larger than it is. *Limit*: by Richardson's extrapolation of the "
+                "three finest grids, where they converge; ±: between draws.\n",
+                grids(one.refinement),
+                f"![against the cell]({picture(one.reading, 'grids')})\n",
+            ]
     for one in studies:
         parts.append(f"## Figures, reading `{one.reading}`\n")
         for number, title in _FIGURES.items():
@@ -71,9 +67,10 @@ def markdown(studies: Sequence[Study]) -> str:
     return "\n".join(parts)
 
 
-def picture(reading: str, number: int) -> str:
-    """The file of a figure of the paper, from the directory of the page."""
-    return f"{reading}/figure_{number}.png"
+def picture(reading: str, name: int | str) -> str:
+    """The file of a figure, by its number in the paper or its name, from the directory of the
+    page."""
+    return f"{reading}/figure_{name}.png"
 
 
 def html(text: str) -> str:
@@ -99,39 +96,35 @@ def _settings(studies: Sequence[Study]) -> str:
                 f"cone {reading.cone}, viscosity {reading.viscosity:g} m2/s, {sides}",
             )
         )
-    first = next(iter(studies[0].runs.values()))[0]
-    stones = [run for name, draws in studies[0].runs.items() if name != "soil" for run in draws]
-    versions = {
-        (run.attributes["gimpslope_version"], run.attributes["instruction_set"])
-        for one in studies
-        for draws in one.runs.values()
-        for run in draws
-    }
+    first = studies[0].runs[SOIL][0]
+    runs = [run for one in studies for draws in one.runs.values() for run in draws]
+    versions = sorted(
+        {
+            f"{run.attributes['gimpslope_version']} on {run.attributes['instruction_set']}"
+            for run in runs
+        }
+    )
     kind, step = first.method.step
+    modulus = studies[0].runs[STONES[0]][0].scene.materials[-1].young
+    seeds = studies[0].seeds[STONES[0]]
     rows += [
         ("cell", f"{first.scene.cell:g} m, {len(first.points):,} points"),
         ("time step", f"{step:g} of the Courant limit" if kind == "courant" else f"{step:g} s"),
         ("slide", f"{first.stages.slide.duration:g} s"),
+        ("Young's modulus of the stones", f"{modulus:g} Pa"),
+        ("seeds of the stones", ", ".join(map(str, seeds))),
+        *((f"{name} stones", _stones(studies[0].runs[name])) for name in STONES),
+        ("gimpslope", "; ".join(versions)),
     ]
-    if stones:
-        content = {f"{_seed(run)}" for run in stones}
-        modulus = stones[0].scene.materials[-1].young
-        counts = ", ".join(_counted(run) for run in stones)
-        rows += [
-            ("Young's modulus of the stones", f"{modulus:g} Pa"),
-            ("seeds of the stones", ", ".join(sorted(content, key=int))),
-            ("stones", counts),
-            ("smallest gap between stones", _gaps(stones)),
-        ]
-    rows.append(
-        ("gimpslope", "; ".join(f"{version} on {kind}" for version, kind in sorted(versions)))
-    )
-    return _table(("setting", "value"), rows)
+    return table(("setting", "value"), rows)
 
 
-def _gaps(runs: Sequence[Run]) -> str:
-    gaps = [gap for run in runs if (gap := run.summary["smallest_gap_in_cells"]) is not None]
-    return f"{min(gaps):.2f} cells; stones closer than two share nodes and act as one"
+def _stones(draws: Sequence[Run]) -> str:
+    """Number, points, and the smallest gap of each draw's stones."""
+    scenes = [run.scene for run in draws]
+    counts = ", ".join(f"{np.count_nonzero(scene.points.stone >= 0):,}" for scene in scenes)
+    gaps = ", ".join(f"{run.summary['smallest_gap_in_cells']:.2f}" for run in draws)
+    return f"{len(scenes[0].stones)}; {counts} points; smallest gap {gaps} cells"
 
 
 def settings_of(one: Study) -> str:
@@ -148,64 +141,6 @@ def _chance(one: Study) -> str:
     here, there = settings_of(one), KNOWN["from"]
     same = "as here" if here == there else f"while this is {here}"
     return f"Chance in `{one.reading}`: as known from five draws of each kind ({there}), {same}.\n"
-
-
-def _seed(run: Run) -> str:
-    return run.path.stem.rpartition("_")[2]
-
-
-def _counted(run: Run) -> str:
-    name = run.path.stem.split("_")[1]
-    in_stones = int(np.count_nonzero(run.points.stone >= 0))
-    return f"{name} ({_seed(run)}) {len(run.scene.stones)} of {in_stones:,} points"
-
-
-def _comparison(studies: Sequence[Study]) -> str:
-    head = ["slope", "figure", "paper"]
-    head += [cell for one in studies for cell in (f"`{one.reading}`", "difference")]
-    rows = []
-    for name, letter in reference.SLOPES.items():
-        for figure, key, title, digits in _ROWS:
-            paper = reference.PAPER[name].get(key) if key else None
-            above = (name, key) in _LOWER_BOUNDS
-            shown = "-" if paper is None else f"{'> ' if above else ''}{paper:g}"
-            row = [f"{letter} {name}", title, shown]
-            for one in studies:
-                mean, spread = _mean(one.measures[name], figure)
-                here = "not reached" if np.isnan(mean) else f"{mean:.{digits}f}"
-                row.append(here if spread is None else f"{here} ± {spread:.{digits}f}")
-                row.append(_difference(mean, paper, above, digits))
-            rows.append(row)
-    return _table(head, rows)
-
-
-def _mean(draws: Sequence[Measures], figure: str) -> tuple[float, float | None]:
-    """Mean over the draws, and their standard deviation where there are several."""
-    values = np.array([getattr(one, figure) for one in draws])
-    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else None
-
-
-def _difference(here: float, paper: float | None, above: bool, digits: int) -> str:
-    if paper is None or np.isnan(here):
-        return "-"
-    if above:
-        return "above" if here > paper else f"{here - paper:+.{digits}f}"
-    return f"{here - paper:+.{digits}f}"
-
-
-def _claims(studies: Sequence[Study]) -> str:
-    head = ["section", "the paper says", *(f"`{one.reading}`" for one in studies)]
-    rows = []
-    for found in zip(*(one.judgements for one in studies), strict=True):
-        claim = found[0][0]
-        cells = [f"**{judgement.verdict}**: {judgement.figures}" for _, judgement in found]
-        rows.append([claim.section, claim.text, *cells])
-    return _table(head, rows)
-
-
-def _table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    lines = [head, ["---"] * len(head), *rows]
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
 
 
 def counts(studies: Sequence[Study]) -> Mapping[str, Mapping[str, int]]:

@@ -1,4 +1,4 @@
-"""The runs of the study: planned, made, measured, and written down."""
+"""The runs of the study: made, measured, and written down."""
 
 from __future__ import annotations
 
@@ -6,31 +6,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
+from typing import Any, TypeVar
 
-from ... import _check
 from ...figures import study as figures
 from ...run import Run
-from ...setup import Setup
-from ...solver import Solver
-from .. import parallel, plain_data, planned, reference
-from ..planned import Planned
+from .. import parallel, plain_data, reference
 from . import report
 from .claims import Claim, judge
 from .judging import STONES, Judgement
 from .measures import Measures, measure
-from .sample import has_own_spread, spread
+from .plan import Plan, Slope
+from .refinement import Refinement, refinement
+from .refinement import figure as refinement_figure
+from .sample import has_own_spread, spread, spread_of
 
-SEEDS = (1,)
+T = TypeVar("T")
+
 _DPI = 120
-
-
-@dataclass(frozen=True)
-class Slope:
-    """One slope of the study in one reading, with one run a draw of its stones."""
-
-    reading: str
-    name: str
-    planned: tuple[Planned, ...]
 
 
 @dataclass(frozen=True)
@@ -40,99 +32,51 @@ class Study:
     Attributes
     ----------
     reading : of the paper, see `reference.READINGS`
+    seeds : of each slope's draws
     runs : of each slope, those of its draws, the first of which is shown in figures
     measures : the figures of these runs
     judgements : each claim of the paper, and what the runs say of it
+    refinement : what some of the slopes do on other grids, if they were run
     """
 
     reading: str
+    seeds: Mapping[str, tuple[int, ...]]
     runs: Mapping[str, tuple[Run, ...]]
     measures: Mapping[str, tuple[Measures, ...]]
     judgements: Sequence[tuple[Claim, Judgement]]
+    refinement: Refinement | None
 
 
-def plan(
-    directory: str | PathLike[str],
-    *,
-    readings: Sequence[str] = tuple(reference.READINGS),
-    cell: float = 0.1,
-    stone_modulus: float = reference.STONE_MODULUS,
-    seeds: Sequence[int] = SEEDS,
-    duration: float = 10.0,
-    time_step: float | None = None,
-    overwrite: bool = False,
-) -> list[Slope]:
-    """The runs that the study needs, and those that are there already; writes nothing.
-
-    Parameters
-    ----------
-    directory : for the run files. Finished runs of the same setup and version are taken as they are
-    readings : some of `reference.READINGS`
-    cell : side of a grid cell, m
-    stone_modulus : Young's modulus of the stones, Pa
-    seeds : of the draws of stones, each another one
-    duration : of the slides, s
-    time_step : fixed, s; None: a Courant number of 0.4
-    overwrite : replace files of those names that hold other runs
-
-    Raises
-    ------
-    TypeError, ValueError
-        If a parameter is refused.
-    FileExistsError
-        If a file of those names holds something else and may not be replaced.
-    """
-    if not seeds or len(set(seeds)) < len(seeds):
-        raise ValueError(f"seeds must be one or more different numbers, got {list(seeds)}")
-    for seed in seeds:
-        _check.whole("seed", seed, 0)
-    slopes = []
-    for reading in readings:
-        for name in reference.SLOPES:
-            draws = []
-            for seed in seeds if name != "soil" else seeds[:1]:
-                setup = reference.setup(
-                    name,
-                    reading=reading,
-                    cell=cell,
-                    duration=duration,
-                    seed=seed,
-                    stone_modulus=stone_modulus,
-                    time_step=time_step,
-                )
-                _check_step(setup)
-                drawn = "" if name == "soil" else f"_{seed}"
-                path = Path(directory) / f"{reading}_{name}{drawn}.h5"
-                draws.append(planned.plan(path, setup, overwrite=overwrite))
-            slopes.append(Slope(reading, name, tuple(draws)))
-    return slopes
-
-
-def _check_step(setup: Setup) -> None:
-    """Refuse a time step above the stable limit now, and not in a process after hours."""
-    if setup.method.time_step is not None:
-        Solver.of(setup.scene, setup.method)
-
-
-def study(slopes: Sequence[Slope], *, jobs: int = 1, progress: bool = True) -> list[Study]:
+def study(plan: Plan, *, jobs: int = 1, progress: bool = True) -> list[Study]:
     """Run what was planned, at most `jobs` runs at a time, and judge the claims of the paper: one
     study a reading. Raises `parallel.RunFailed` if a run does not reach its end."""
-    # The longest runs first, so that none is left alone at the end.
-    wanted = sorted(
-        (one for slope in slopes for one in slope.planned),
-        key=lambda one: len(one.setup.scene.stones) == 0,
-    )
-    runs = {run.path: run for run in parallel.run_all(wanted, jobs=jobs, progress=progress)}
+    made = parallel.run_all(plan.runs, jobs=jobs, progress=progress)
+    runs = {run.path: run for run in made}
+    measured = {run.path: measure(run) for run in made}
     studies = []
-    for reading in dict.fromkeys(slope.reading for slope in slopes):
-        of_reading = {
-            slope.name: tuple(runs[one.path] for one in slope.planned)
-            for slope in slopes
-            if slope.reading == reading
-        }
-        measures = {name: tuple(map(measure, draws)) for name, draws in of_reading.items()}
-        studies.append(Study(reading, of_reading, measures, judge(measures)))
+    for reading in dict.fromkeys(slope.reading for slope in plan.slopes):
+        slopes = {slope.name: slope for slope in plan.slopes if slope.reading == reading}
+        measures = {name: _of(slope, measured) for name, slope in slopes.items()}
+        spread = spread_of([measures[name] for name in STONES])
+        grids: dict[float, dict[str, tuple[Measures, ...]]] = {}
+        for slope in plan.refined:
+            if slope.reading == reading:
+                grids.setdefault(slope.cell, {})[slope.name] = _of(slope, measured)
+        studies.append(
+            Study(
+                reading,
+                {name: slope.seeds for name, slope in slopes.items()},
+                {name: _of(slope, runs) for name, slope in slopes.items()},
+                measures,
+                judge(measures, spread),
+                refinement(grids, spread) if grids else None,
+            )
+        )
     return studies
+
+
+def _of(slope: Slope, by_path: Mapping[Path, T]) -> tuple[T, ...]:
+    return tuple(by_path[one.path] for one in slope.planned)
 
 
 def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
@@ -141,11 +85,15 @@ def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
     folder = Path(directory)
     folder.mkdir(parents=True, exist_ok=True)
     for one in studies:
-        shown = {_title(name): draws[0] for name, draws in one.runs.items()}
-        paper = {_title(name): reference.PAPER[name] for name in one.runs}
+        shown = {reference.title(name): draws[0] for name, draws in one.runs.items()}
+        paper = {reference.title(name): reference.PAPER[name] for name in one.runs}
         (folder / one.reading).mkdir(exist_ok=True)
         for number, figure in figures.figures(shown, paper).items():
             figure.savefig(folder / report.picture(one.reading, number), dpi=_DPI)
+        if one.refinement:
+            refinement_figure(one.refinement).savefig(
+                folder / report.picture(one.reading, "grids"), dpi=_DPI
+            )
     (folder / "figures.json").write_text(plain_data.dumps(_figures(studies)))
     for one in studies:
         drawn = [one.measures[name] for name in STONES]
@@ -157,14 +105,10 @@ def write(studies: Sequence[Study], directory: str | PathLike[str]) -> None:
     (folder / "summary.html").write_text(report.html(text))
 
 
-def _title(name: str) -> str:
-    """As the paper names its slopes: A soil, B arbitrary and so on."""
-    return f"{reference.SLOPES[name]} {name}"
-
-
-def _figures(studies: Sequence[Study]) -> dict[str, dict[str, dict[str, float]]]:
-    """What was measured, by reading, run file and figure."""
-    return {
+def _figures(studies: Sequence[Study]) -> dict[str, dict[str, Any]]:
+    """What was measured, by reading, run file and figure; on several grids by reading, cell, slope,
+    draw and figure."""
+    measured: dict[str, dict[str, Any]] = {
         one.reading: {
             run.path.stem: measures.to_dict()
             for name, draws in one.runs.items()
@@ -172,3 +116,12 @@ def _figures(studies: Sequence[Study]) -> dict[str, dict[str, dict[str, float]]]
         }
         for one in studies
     }
+    measured["grids"] = {
+        one.reading: {
+            f"{cell:g}": {name: [each.to_dict() for each in draws] for name, draws in grid.items()}
+            for cell, grid in one.refinement.grids.items()
+        }
+        for one in studies
+        if one.refinement
+    }
+    return measured

@@ -1,0 +1,43 @@
+"""Results on several grids."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.axes import Axes
+
+from .canvas import new_axes
+
+
+def against_cell(
+    cells: Sequence[float],
+    values: Mapping[str, npt.ArrayLike],
+    ax: Axes | None = None,
+    *,
+    reference: Mapping[str, float] | None = None,
+) -> Axes:
+    """A result against the side of the cell (m): the mean over draws as a line, each draw a point.
+
+    Parameters
+    ----------
+    cells : m, shape (n,)
+    values : by the name of the slope, shape (n, draws)
+    ax : to draw on; None: a new one
+    reference : published values by the name of the slope, drawn across
+    """
+    ax = ax or new_axes()
+    for number, (name, draws) in enumerate(values.items()):
+        found, colour = np.asarray(draws, dtype=float), f"C{number}"
+        ax.plot(cells, found.mean(axis=1), "-", color=colour, linewidth=1.8, label=name)
+        ax.plot(cells, found, "o", color=colour, markersize=4.5, alpha=0.7)
+        if reference and name in reference:
+            label = f"{name}, the paper"
+            ax.axhline(reference[name], color=colour, linestyle="--", linewidth=1.2, label=label)
+    ax.set_xlabel("cell (m)")
+    ax.set_xlim(0.0, 1.08 * max(cells))
+    ax.set_ylim(bottom=0.0)
+    ax.margins(y=0.15)
+    ax.grid(alpha=0.3)
+    return ax
