@@ -18,7 +18,8 @@ void check_values(std::span<const double> values, std::size_t count, bool positi
   }
 }
 
-void check(const InitialPoints& p, std::size_t materials, const std::string& shape) {
+void check(const InitialPoints& p, const std::vector<Material>& materials,
+           const std::string& shape) {
   const std::size_t n = p.position.size() / 2;
   require(n > 0 && n < (1u << 29), "position", std::to_string(n) + " points", "1 to 2^29 points");
   check_values(p.position, 2 * n, false, "position");
@@ -28,9 +29,14 @@ void check(const InitialPoints& p, std::size_t materials, const std::string& sha
   check_values(p.volume, n, true, "volume");
   require(p.material.size() == n, "material", std::to_string(p.material.size()) + " values",
           (std::to_string(n) + " values").c_str());
-  const std::string rule = "an index into the " + std::to_string(materials) + " materials";
+  const std::string rule = "an index into the " + std::to_string(materials.size()) + " materials";
   for (const int m : p.material)
-    require(m >= 0 && static_cast<std::size_t>(m) < materials, "material", m, rule.c_str());
+    require(m >= 0 && static_cast<std::size_t>(m) < materials.size(), "material", m, rule.c_str());
+  require(p.stone.size() == n, "stone", std::to_string(p.stone.size()) + " values",
+          (std::to_string(n) + " values").c_str());
+  for (std::size_t k = 0; k < n; ++k)
+    require(materials[p.material[k]].law != LawKind::rigid || p.stone[k] >= 0, "stone", p.stone[k],
+            "the number of a stone where the material is rigid");
 }
 
 void check(const Method& m) {

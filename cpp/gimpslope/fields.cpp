@@ -156,6 +156,8 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
+  if (name == "position") bodies_.take_shape(points_);
+  if (name == "position" || name == "velocity") bodies_.make_rigid(points_);
   single_loaded_ = energies_known_ = false;
   if (name != "body_force") nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;

@@ -9,6 +9,7 @@
 //   damping      -dt (local damping force) . vm, and what kinetic damping takes
 //   external     dt (body force, less the part of gravity that a ramp holds back) . vm
 //   transfer     m (v+^2 - v-^2) / 2 of the nodes less the points' gain of kinetic energy
+//   rigidity     the kinetic energy that the points of rigid bodies lose when they move as one
 //   plastic      V s : (plastic strain increment), with the stress s after the return
 //   hypoelastic  -dV w(s before): the rate law stores energy a volume, and volumes change
 //   integration  V w(ds) - dt (internal force - m g) . dv / 2
@@ -27,6 +28,7 @@ namespace gimpslope {
 struct Ledger {
   double plastic = 0.0, friction = 0.0, impact = 0.0, damping = 0.0;
   double transfer = 0.0, external = 0.0, hypoelastic = 0.0, integration = 0.0;
+  double rigidity = 0.0;
 };
 
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -40,6 +42,7 @@ inline void add(const Ledger& entry, Ledger& sum) {
   sum.external += entry.external;
   sum.hypoelastic += entry.hypoelastic;
   sum.integration += entry.integration;
+  sum.rigidity += entry.rigidity;
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

@@ -34,8 +34,8 @@ bool keeps_deformation(const Method& method) {
 }
 
 /// Room for the points, once they are known to be sound.
-Points room_for(const InitialPoints& given, std::size_t materials, const Method& method,
-                double cell) {
+Points room_for(const InitialPoints& given, const std::vector<Material>& materials,
+                const Method& method, double cell) {
   check(given, materials, method.shape);
   return Points(static_cast<int>(given.mass.size()), own_domains(given, method, cell),
                 keeps_deformation(method));
@@ -61,7 +61,8 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
       materials_(std::move(materials)),
       laws_(laws_of(materials_)),
       grid_(cell, origin[0], origin[1], walls),
-      points_(room_for(given, laws_.size(), method, cell)) {
+      points_(room_for(given, materials_, method, cell)),
+      bodies_(bodies_of(given)) {
   fill(given);
   if (method_.volumetric_strain == VolumetricStrain::cell_average) grid_.keep_cells();
   if (method_.precision == Precision::single) single_ = std::make_unique<SinglePoints>();
@@ -80,6 +81,8 @@ void Solver::fill(const InitialPoints& given) {
     points_.volume[0][k] = given.volume[k];
     points_.material[k] = given.material[k];
   }
+  bodies_.take_shape(points_);
+  bodies_.make_rigid(points_);
   if (!has_domains(method_.shape)) return;
   const auto& l = given.half_length;
   half_length_ = std::accumulate(l.begin(), l.end(), 0.0) / static_cast<double>(l.size());
@@ -96,6 +99,28 @@ void Solver::fill(const InitialPoints& given) {
       points_.domain_reference[c][k] = jacobian ? own / std::sqrt(given.volume[k]) : own;
     }
   }
+}
+
+/// The stones of rigid material.
+Bodies Solver::bodies_of(const InitialPoints& given) const {
+  const auto is_rigid = [](const Material& material) {
+    return material.law == LawKind::rigid;
+  };
+  if (std::none_of(materials_.begin(), materials_.end(), is_rigid)) return {};
+  std::vector<std::int32_t> body(given.stone.begin(), given.stone.end());
+  std::vector<std::int32_t> deformable;  // stones
+  for (std::size_t k = 0; k < body.size(); ++k) {
+    if (is_rigid(materials_[given.material[k]])) continue;
+    deformable.push_back(body[k]);
+    body[k] = -1;
+  }
+  std::sort(deformable.begin(), deformable.end());
+  for (const std::int32_t number : body)
+    require(number < 0 || !std::binary_search(deformable.begin(), deformable.end(), number),
+            "stone", number, "a stone of one material where that is rigid");
+  require(method_.precision == Precision::double_, "precision", "single",
+          "double with rigid stones");
+  return Bodies(body);
 }
 
 /// The narrowest compiled basis that holds the widest domain.
@@ -145,7 +170,7 @@ bool Solver::advance_through(std::span<const double> times, std::int64_t most,
   for (const double time : times) {
     if (time <= time_) continue;
     if (!advance_to(time, last - steps_)) return false;
-    rows.push_back({time_, steps_, energies(), ledger_});
+    rows.push_back({time_, steps_, energies(), ledger_, bodies_.states()});
   }
   return true;
 }
@@ -172,6 +197,7 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
           half_length_,
           method_.domain_update,
           method_.volume_update,
+          bodies_.empty() ? nullptr : &bodies_view_,
           team_.get(),
           method_.ledger ? ledger_rows_.data() : nullptr,
           &seconds_};
@@ -194,6 +220,8 @@ void Solver::prepare() {
     stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
     if (method_.ledger) ledger_rows_.resize(grid_.rows());
+    bodies_.find(points_);
+    bodies_view_ = bodies_.view();
     travel_ = 0.0;
     steps_since_sort_ = 0;
     sorted_ = true;
@@ -241,6 +269,14 @@ void Solver::step(double dt, double whole, bool wants_energies) {
     all.travel = std::max(all.travel, report.travel);
     all.growth = std::max(all.growth, report.growth);
     all.width = std::max(all.width, report.width);
+    if (report.lost >= 0) fail_at(report.lost, dt);
+  }
+  for (const BodyReport& report : bodies_.reports()) {
+    all.travel = std::max(all.travel, report.travel / grid_.cell());
+    if (method_.ledger) {
+      ledger_.rigidity += report.loss;
+      ledger_.transfer -= report.gain;
+    }
     if (report.lost >= 0) fail_at(report.lost, dt);
   }
   if (method_.ledger) {
@@ -319,6 +355,7 @@ void Solver::damp_at_peak() {
     return;
   }
   points().velocity.fill(0.0);
+  bodies_.make_rigid(points_);
   single_loaded_ = false;
   ledger_.damping += kinetic;
   last_kinetic_ = 0.0;
@@ -367,6 +404,9 @@ void Solver::set_materials(std::vector<Material> materials) {
           std::to_string(materials.size()) + " materials",
           ("a list of " + std::to_string(materials_.size())).c_str());
   std::vector<Law> laws = laws_of(materials);
+  for (std::size_t m = 0; m < laws.size(); ++m)
+    require((laws[m].kind == LawKind::rigid) == (laws_[m].kind == LawKind::rigid), "materials",
+            "number " + std::to_string(m), "rigid where it was, and only there");
   // The same stiffness stays accepted, however the density has changed since the step was given.
   if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);
@@ -378,6 +418,7 @@ void Solver::reset_clock() {
   time_ = time_carry_ = 0.0;
   steps_ = 0;
   ledger_ = {};
+  bodies_.reset_impulses();
   points().plastic_strain.fill(0.0);
   single_loaded_ = false;
 }
@@ -443,7 +484,7 @@ void Solver::check_alpha(double dt) const {
 }
 
 std::int64_t Solver::bytes() const {
-  return points_.bytes() + (single_ ? single_->bytes() : 0) + grid_.bytes() +
+  return points_.bytes() + bodies_.bytes() + (single_ ? single_->bytes() : 0) + grid_.bytes() +
          layout_.blocks.capacity() * sizeof(Block);
 }
 

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bodies.hpp"
 #include "checks.hpp"
 #include "grid.hpp"
 #include "kernel.hpp"
@@ -36,6 +37,7 @@ struct Row {
   std::int64_t steps;
   Energies energies;
   Ledger ledger;
+  std::vector<BodyState> bodies;
 };
 
 class Solver {
@@ -83,6 +85,9 @@ class Solver {
   std::vector<std::int32_t> material_of_points() const;
   std::span<const std::int32_t> numbers() const { return points_.number; }
 
+  /// Rigid bodies, and the numbers of the stones that they are.
+  const Bodies& bodies() const { return bodies_; }
+
   double time() const { return time_; }
   std::int64_t steps() const { return steps_; }
   int size() const { return points_.size; }
@@ -105,6 +110,7 @@ class Solver {
   View<Real> view_of(const PointsView<Real>& points);
   Points& points();
   const Points& points() const;
+  Bodies bodies_of(const InitialPoints& given) const;
   void prepare();
   void step(double dt, double whole, bool wants_energies = false);
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
@@ -132,6 +138,8 @@ class Solver {
   bool single_loaded_ = false;            // it holds the state of the points,
   mutable bool single_ahead_ = false;     // or a later one
   bool watched_ = false;                  // which then is given back after every call
+  Bodies bodies_;
+  BodiesView bodies_view_{};
   Layout layout_;
   Basis basis_;
   Kernel<double> kernel_{};

@@ -73,6 +73,36 @@ struct GridView {
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
 };
 
+/// A rigid body: its points' centre of mass, and what has become of it since the clock was last set
+/// to zero.
+struct BodyState {
+  double centre[2], angle;             // m; radians, counter-clockwise, since its points were given
+  double velocity[2], spin;            // m/s; radians a second
+  double impulse[2], angular_impulse;  // of all but gravity, N s/m; N m s/m, about the centre
+};
+
+/// What a body reports of a step.
+struct BodyReport {
+  double travel = 0.0;     // largest displacement of a point, m
+  double loss = 0.0;       // kinetic energy that its points lose to its rigidity, J/m,
+  double gain = 0.0;       // and have since angular momentum is taken at the nodes
+  std::int32_t lost = -1;  // storage index of a point that it would move too far
+};
+
+/// Rigid bodies. Body b has the points member[begin[b]] to member[begin[b + 1]], each at an offset
+/// from its centre before it turned. `exchange` holds what the nodes tell of each point of a body
+/// in a step, in storage order: displacement x, y, and the moments about the point of the nodes'
+/// displacements and changes of velocity.
+struct BodiesView {
+  int count;
+  const std::int32_t *begin, *member;
+  const double* offset[2];
+  const double *mass, *inertia;  // kg/m; kg m
+  BodyState* state;
+  BodyReport* reports;
+  double* exchange[4];
+};
+
 /// What a step works on. The points are kept in double or single precision; the grid, and all
 /// that is computed on the way, is in double.
 template <class Real>
@@ -87,6 +117,7 @@ struct View {
   double half_length;          // of all points alike, where points.half_length is null
   DomainUpdate domain_update;
   VolumeUpdate volume_update;
+  const BodiesView* bodies;  // null where there are none
   Team* team;
   Ledger* ledger;  // of each row of nodes; null where none is kept
   Seconds* seconds;

@@ -14,9 +14,10 @@ void bind_material(py::module_& m) {
                  density,
                  young,
                  poisson,
-                 parse<LawKind>(
-                     "law", law,
-                     {{"elastic", LawKind::elastic}, {"drucker_prager", LawKind::drucker_prager}}),
+                 parse<LawKind>("law", law,
+                                {{"elastic", LawKind::elastic},
+                                 {"drucker_prager", LawKind::drucker_prager},
+                                 {"rigid", LawKind::rigid}}),
                  friction,
                  cohesion,
                  dilation,
@@ -29,9 +30,10 @@ void bind_material(py::module_& m) {
              material.check();
              return material;
            }),
-           py::arg("density"), py::arg("young"), py::arg("poisson"), py::arg("law") = "elastic",
-           py::arg("friction") = 0.0, py::arg("cohesion") = 0.0, py::arg("dilation") = 0.0,
-           py::arg("cone") = "plane_strain_associated", py::arg("tension_cutoff") = INFINITY)
+           py::arg("density"), py::arg("young") = NAN, py::arg("poisson") = NAN,
+           py::arg("law") = "elastic", py::arg("friction") = 0.0, py::arg("cohesion") = 0.0,
+           py::arg("dilation") = 0.0, py::arg("cone") = "plane_strain_associated",
+           py::arg("tension_cutoff") = INFINITY)
       .def_property_readonly("bulk_modulus", &Material::bulk_modulus)
       .def_property_readonly("shear_modulus", &Material::shear_modulus)
       .def_property_readonly(

@@ -6,12 +6,12 @@ using namespace gimpslope;
 
 namespace {
 
-/// Indices of materials; numbers with a fraction are refused, not cut.
-std::vector<std::int32_t> indices_of(const py::array& given, py::ssize_t n) {
+/// Whole numbers of points; those with a fraction are refused, not cut.
+std::vector<std::int32_t> indices_of(const py::array& given, const char* name, py::ssize_t n) {
   const char kind = given.dtype().kind();
   if (given.ndim() != 1 || given.shape(0) != n || (kind != 'i' && kind != 'u')) {
     refuse(
-        "material",
+        name,
         py::cast<std::string>(py::str("{} of shape {}").format(given.dtype(), given.attr("shape"))),
         "an array of whole numbers of shape (" + std::to_string(n) + ", )");
   }
@@ -65,11 +65,18 @@ InstructionSet instruction_set_of(const std::string& given) {
 
 GivenPoints::GivenPoints(const Doubles& position, const Doubles& velocity,
                          const Doubles& half_length, const Doubles& mass, const Doubles& volume,
-                         const py::array& given_material) {
+                         const py::array& given_material, const py::array* given_stone) {
   const py::ssize_t n = rows_of(position);
-  points = {values_of(position, "position", n, 2),       values_of(velocity, "velocity", n, 2),
-            values_of(half_length, "half_length", n, 2), values_of(mass, "mass", n, 1),
-            values_of(volume, "volume", n, 1),           {}};
-  material = indices_of(given_material, n);
+  points = {values_of(position, "position", n, 2),
+            values_of(velocity, "velocity", n, 2),
+            values_of(half_length, "half_length", n, 2),
+            values_of(mass, "mass", n, 1),
+            values_of(volume, "volume", n, 1),
+            {},
+            {}};
+  material = indices_of(given_material, "material", n);
+  stone = given_stone != nullptr ? indices_of(*given_stone, "stone", n)
+                                 : std::vector<std::int32_t>(n, -1);
   points.material = material;
+  points.stone = stone;
 }

@@ -29,8 +29,9 @@ gimpslope::InstructionSet instruction_set_of(const std::string& given);
 /// The arrays of the points, with their shapes checked; valid as long as the arrays are.
 struct GivenPoints {
   GivenPoints(const Doubles& position, const Doubles& velocity, const Doubles& half_length,
-              const Doubles& mass, const Doubles& volume, const py::array& material);
+              const Doubles& mass, const Doubles& volume, const py::array& material,
+              const py::array* stone = nullptr);
 
-  std::vector<std::int32_t> material;
+  std::vector<std::int32_t> material, stone;
   gimpslope::InitialPoints points;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "bind.hpp"
 #include "bind_method.hpp"
@@ -29,8 +30,8 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
                               const Doubles& volume, const py::array& material,
                               std::vector<Material> materials, double cell,
                               std::array<double, 2> origin, const std::array<WallTuple, 4>& walls,
-                              const std::string& shape, const std::string& domain_update,
-                              const std::string& volume_update,
+                              const std::optional<py::array>& stone, const std::string& shape,
+                              const std::string& domain_update, const std::string& volume_update,
                               const std::string& volumetric_strain, const std::string& scheme,
                               const Choice& blended, const Choice& step,
                               const std::string& precision, int threads, bool allow_unstable,
@@ -55,7 +56,8 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
   method.threads = threads;
   method.allow_unstable = allow_unstable;
   method.ledger = ledger;
-  const GivenPoints given(position, velocity, half_length, mass, volume, material);
+  const GivenPoints given(position, velocity, half_length, mass, volume, material,
+                          stone ? &*stone : nullptr);
   return std::unique_ptr<Guarded>(
       new Guarded{Solver(given.points, std::move(materials), cell, origin, walls_of(walls), method,
                          instruction_set_of(instruction_set)),
@@ -72,7 +74,8 @@ constexpr std::pair<const char*, double Ledger::*> kLedger[] = {
     {"plastic", &Ledger::plastic},         {"friction", &Ledger::friction},
     {"impact", &Ledger::impact},           {"damping", &Ledger::damping},
     {"transfer", &Ledger::transfer},       {"external", &Ledger::external},
-    {"hypoelastic", &Ledger::hypoelastic}, {"integration", &Ledger::integration}};
+    {"hypoelastic", &Ledger::hypoelastic}, {"integration", &Ledger::integration},
+    {"rigidity", &Ledger::rigidity}};
 
 /// The members of a struct by their names.
 template <class Struct, std::size_t count>
@@ -80,6 +83,20 @@ py::dict by_name(const Struct& values,
                  const std::pair<const char*, double Struct::*> (&names)[count]) {
   py::dict result;
   for (const auto& [name, member] : names) result[name] = values.*member;
+  return result;
+}
+
+/// x, y, angle, their rates, impulse x, y and angular impulse of each body: shape (rows, bodies,
+/// 9).
+py::array_t<double> bodies_of(std::span<const std::vector<BodyState>* const> rows) {
+  const std::size_t bodies = rows.empty() ? 0 : rows.front()->size();
+  py::array_t<double> result({rows.size(), bodies, std::size_t{9}});
+  double* out = result.mutable_data();
+  for (const auto* row : rows)
+    for (const BodyState& b : *row)
+      for (const double value : {b.centre[0], b.centre[1], b.angle, b.velocity[0], b.velocity[1],
+                                 b.spin, b.impulse[0], b.impulse[1], b.angular_impulse})
+        *out++ = value;
   return result;
 }
 
@@ -97,6 +114,11 @@ py::dict take_rows(Guarded& guarded) {
   result["step"] = column([](const Row& row) { return row.steps; });
   for (const auto& [name, member] : kEnergies)
     result[name] = column([member = member](const Row& row) { return row.energies.*member; });
+  if (!guarded.solver.bodies().empty()) {
+    std::vector<const std::vector<BodyState>*> states;
+    for (const Row& row : rows) states.push_back(&row.bodies);
+    result["rigid_stones"] = bodies_of(states);
+  }
   if (!ledger) return result;
   for (const auto& [name, member] : kLedger)
     result[name] = column([member = member](const Row& row) { return row.ledger.*member; });
@@ -184,9 +206,10 @@ void bind_solver(py::module_& m) {
       .def(py::init(&make), py::arg("position"), py::arg("velocity"), py::arg("half_length"),
            py::arg("mass"), py::arg("volume"), py::arg("material"), py::arg("materials"),
            py::kw_only(), py::arg("cell"), py::arg("origin"), py::arg("walls"),
-           py::arg("shape") = "ugimp", py::arg("domain_update") = "none",
-           py::arg("volume_update") = "linear", py::arg("volumetric_strain") = "point",
-           py::arg("scheme") = "usf", py::arg("blend") = Choice{"alpha", Blend{}.value},
+           py::arg("stone") = py::none(), py::arg("shape") = "ugimp",
+           py::arg("domain_update") = "none", py::arg("volume_update") = "linear",
+           py::arg("volumetric_strain") = "point", py::arg("scheme") = "usf",
+           py::arg("blend") = Choice{"alpha", Blend{}.value},
            py::arg("time_step") = Choice{"courant", TimeStep{}.value},
            py::arg("precision") = "double", py::arg("threads") = Method{}.threads,
            py::arg("allow_unstable") = false, py::arg("ledger") = false,
@@ -241,6 +264,16 @@ void bind_solver(py::module_& m) {
       .def("reset_clock", read(&Solver::reset_clock))
       .def("energies", [](Guarded& s) { return by_name(s.get().energies(), kEnergies); })
       .def("ledger", [](Guarded& s) { return by_name(s.get().ledger(), kLedger); })
+      .def("bodies",
+           [](Guarded& s) {
+             const auto* now = &s.get().bodies().states();
+             return bodies_of(std::span(&now, 1));
+           })
+      .def("body_numbers",
+           [](Guarded& s) {
+             const auto& found = s.get().bodies().numbers();
+             return py::array_t<std::int32_t>(static_cast<py::ssize_t>(found.size()), found.data());
+           })
       .def("get", &values<double>, py::arg("name"))
       .def("get_single", &values<float>, py::arg("name"))
       .def(

@@ -16,7 +16,7 @@ from importlib.metadata import version
 
 from . import kernel, stones
 from .ledger import Ledger
-from .materials import DruckerPrager, Elastic, Material
+from .materials import DruckerPrager, Elastic, Material, Rigid
 from .method import Method
 from .outline import Outline
 from .recording import Recording
@@ -49,6 +49,7 @@ __all__ = [
     "Outline",
     "Points",
     "Recording",
+    "Rigid",
     "Roller",
     "Run",
     "Scene",

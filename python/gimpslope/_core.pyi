@@ -15,8 +15,8 @@ class Material:
     def __init__(
         self,
         density: float,
-        young: float,
-        poisson: float,
+        young: float = ...,
+        poisson: float = ...,
         law: str = ...,
         friction: float = ...,
         cohesion: float = ...,
@@ -49,6 +49,7 @@ class Solver:
         cell: float,
         origin: tuple[float, float],
         walls: Sequence[tuple[str, float, float]],
+        stone: ArrayLike | None = ...,
         shape: str = ...,
         domain_update: str = ...,
         volume_update: str = ...,
@@ -74,6 +75,8 @@ class Solver:
     def reset_clock(self) -> None: ...
     def energies(self) -> dict[str, float]: ...
     def ledger(self) -> dict[str, float]: ...
+    def bodies(self) -> NDArray[np.float64]: ...
+    def body_numbers(self) -> NDArray[np.int32]: ...
     def get(self, name: str) -> NDArray[np.float64]: ...
     def get_single(self, name: str) -> NDArray[np.float32]: ...
     def set(self, name: str, values: ArrayLike) -> None: ...

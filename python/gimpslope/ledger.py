@@ -36,6 +36,7 @@ class Ledger(NamedTuple):
     hypoelastic : taken by the rate form of the elastic law, which stores energy a volume while
         volumes change; of either sign, and small where elastic strains are
     integration : residue of the finite time step; it swings at first order in the step
+    rigidity : kinetic energy that the points of rigid stones lose as they move as one
     """
 
     plastic: float
@@ -46,6 +47,7 @@ class Ledger(NamedTuple):
     external: float
     hypoelastic: float
     integration: float
+    rigidity: float
 
     @property
     def taken(self) -> float:
@@ -53,7 +55,16 @@ class Ledger(NamedTuple):
         return sum(self) - 2 * self.external
 
 
-SINKS = ("plastic", "friction", "impact", "damping", "transfer", "hypoelastic", "integration")
+SINKS = (
+    "plastic",
+    "friction",
+    "impact",
+    "damping",
+    "transfer",
+    "rigidity",
+    "hypoelastic",
+    "integration",
+)
 """The entries that take energy from the motion; the last two may have either sign."""
 
 
@@ -66,8 +77,8 @@ class LedgerRows:
     path : the run file
     time : s; in the slide from the trigger
     kinetic, potential, elastic : J/m, the state at that time
-    plastic, friction, impact, damping, transfer, external, hypoelastic, integration : as in
-        `Ledger`, J/m; in the slide, `plastic` starts with the energy that the trigger releases
+    plastic, friction, impact, damping, transfer, external, hypoelastic, integration, rigidity : as
+        in `Ledger`, J/m; in the slide, `plastic` starts with the energy that the trigger releases
     """
 
     path: Path
@@ -83,6 +94,7 @@ class LedgerRows:
     external: FloatArray
     hypoelastic: FloatArray
     integration: FloatArray
+    rigidity: FloatArray
 
     def __len__(self) -> int:
         return len(self.time)

@@ -1,4 +1,4 @@
-"""Materials: linear elasticity and Drucker-Prager plasticity, in plane strain."""
+"""Materials: linear elasticity and Drucker-Prager plasticity, in plane strain, and rigid ones."""
 
 from __future__ import annotations
 
@@ -15,19 +15,36 @@ Cone = Literal["outer", "inner", "plane_strain_associated", "plane_strain"]
 
 @dataclass(frozen=True)
 class Material(Record, ABC):
-    """What every material has: a density and isotropic elasticity.
+    """What every material has: a density.
 
-    Not made by itself; see `Elastic` and `DruckerPrager`. The compiled kernel checks the ranges and
-    holds the formulas.
+    Not made by itself; see `Elastic`, `DruckerPrager` and `Rigid`. The compiled kernel checks the
+    ranges and holds the formulas.
     """
 
     density: float
+
+    def __post_init__(self) -> None:
+        self._store(density=_check.finite("density", self.density))
+
+    @abstractmethod
+    def elastic(self) -> Material:
+        """The same material without its yield surface, if it has one."""
+
+    @abstractmethod
+    def to_core(self) -> _core.Material:
+        """The material as the compiled kernel takes it."""
+
+
+@dataclass(frozen=True)
+class Deformable(Material):
+    """A material with isotropic elasticity; see `Elastic` and `DruckerPrager`."""
+
     young: float
     poisson: float
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         self._store(
-            density=_check.finite("density", self.density),
             young=_check.finite("young", self.young),
             poisson=_check.finite("poisson", self.poisson),
         )
@@ -51,13 +68,9 @@ class Material(Record, ABC):
         """The same material without its yield surface, if it has one."""
         return Elastic(self.density, self.young, self.poisson)
 
-    @abstractmethod
-    def to_core(self) -> _core.Material:
-        """The material as the compiled kernel takes it."""
-
 
 @dataclass(frozen=True)
-class Elastic(Material):
+class Elastic(Deformable):
     """Linear elastic material.
 
     Parameters
@@ -82,7 +95,7 @@ class Elastic(Material):
 
 
 @dataclass(frozen=True)
-class DruckerPrager(Material):
+class DruckerPrager(Deformable):
     """Linear elastic, perfectly plastic material with the Drucker-Prager cone.
 
     It yields at sqrt(J2) + eta p = xi c and flows along the gradient of sqrt(J2) + etabar p, with
@@ -164,3 +177,35 @@ class DruckerPrager(Material):
             cone=self.cone,
             tension_cutoff=math.inf if self.tension_cutoff is None else self.tension_cutoff,
         )
+
+
+@dataclass(frozen=True)
+class Rigid(Material):
+    """A material of stones that do not deform: each moves as one.
+
+    A stone's momentum and angular momentum are those that its points take from the grid; the
+    velocity and spin that follow are those of all its points, which keep their places in it. No
+    wave runs in it, so that the other materials set the time step alone. Of stones only, and in
+    double precision only.
+
+    Parameters
+    ----------
+    density : kg/m3, > 0
+
+    Raises
+    ------
+    TypeError, ValueError
+        If the density is not a positive number.
+    """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.to_core()
+
+    def elastic(self) -> Rigid:
+        """Itself."""
+        return self
+
+    def to_core(self) -> _core.Material:
+        """The material as the compiled kernel takes it."""
+        return _core.Material(self.density, law="rigid")

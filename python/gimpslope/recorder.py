@@ -16,7 +16,7 @@ from tqdm import tqdm
 
 from . import _check
 from .io.atomic import uninterrupted
-from .io.hdf5 import FIELDS, SNAPSHOT_FIELDS, STAGES, Quantity, RunWriter
+from .io.hdf5 import FIELDS, RIGID_STONES, SNAPSHOT_FIELDS, STAGES, Quantity, RunWriter
 from .run import Run
 from .solver import Diverged
 from .summary import summarise
@@ -65,6 +65,7 @@ class Recorder:
             instruction_set=self._solver.instruction_set,
             threads=self._solver.threads,
             ledger=setup.method.ledger,
+            rigid_stones=self._solver.rigid_stones.number.tolist(),
             overwrite=_check.flag("overwrite", overwrite),
         )
         self._write_points()
@@ -142,7 +143,10 @@ class Recorder:
         solver = self._solver
         ledger = solver.ledger._asdict() if self._setup.method.ledger else {}
         row = {"time": solver.time, "step": solver.steps, **solver.energies()._asdict(), **ledger}
-        self._keep({name: np.array([value]) for name, value in row.items()})
+        rows = {name: np.array([value]) for name, value in row.items()}
+        if len(solver.rigid_stones):
+            rows[RIGID_STONES] = solver.rigid_stones.states[np.newaxis]
+        self._keep(rows)
 
     def _keep(self, rows: dict[str, npt.NDArray[Any]]) -> None:
         if len(rows["step"]) == 0:

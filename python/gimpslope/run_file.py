@@ -17,6 +17,7 @@ from .io import hdf5
 from .ledger import LedgerRows, ledger_of
 from .method import Method
 from .recording import Recording
+from .rigid_stones import RigidStoneRows, rigid_stones_of
 from .scene import Scene
 from .setup import Setup
 from .snapshot import PointsAtStart, Snapshot
@@ -89,6 +90,12 @@ class RunFile:
     def ledger(self) -> LedgerRows:
         """Where the energy of the slide went. Raises `ValueError` if the run kept no ledger."""
         return ledger_of(self.path, "slide")
+
+    @property
+    def rigid_stones(self) -> RigidStoneRows:
+        """Motion of the stones of rigid material in the slide, and the forces on them, a row each
+        of `energy`."""
+        return rigid_stones_of(self.path, "slide")
 
     @property
     def times(self) -> FloatArray:

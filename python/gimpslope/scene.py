@@ -14,7 +14,7 @@ import numpy.typing as npt
 from . import _check
 from ._check import FloatArray
 from ._record import Record
-from .materials import Material
+from .materials import Deformable, Material
 from .outline import Outline
 from .stones import Stone, Stones
 from .stones.stone import Shape
@@ -77,7 +77,7 @@ class Scene(Record):
     Parameters
     ----------
     outline : outline of the slope
-    soil : material of the slope
+    soil : material of the slope, not a rigid one
     stones : the stones (`Stones`, or a sequence of Stone, Outline and Ellipse), inside the slope;
         they may touch but not overlap
     stone : material of the stones that have none of their own; needed with such, and only then
@@ -109,7 +109,7 @@ class Scene(Record):
 
     def __post_init__(self) -> None:
         _check.instance("outline", self.outline, Outline, "an Outline")
-        _check.instance("soil", self.soil, Material, "a material")
+        _check.instance("soil", self.soil, Deformable, "a deformable material")
         _check.instance("walls", self.walls, Walls, "a Walls")
         self._store(
             cell=_check.positive("cell", self.cell),

@@ -14,7 +14,8 @@ Tables and keys
     cell, points_per_cell, gravity : of `Scene`
     outline : height, crest, angle of `Outline.slope`, or vertices
     materials : a table a material, "soil" and others by any name, with the keys of `DruckerPrager`,
-        or of `Elastic` where law = "elastic". "stone" is that of stones that name none
+        or of `Elastic` or `Rigid` where law is "elastic" or "rigid". "stone" is that of stones that
+        name none
     stones : a list of tables with centre, axes, angle, or vertices; and material, a name
     draw : kind "ellipses", "rounds" or "polygons" and the keys of that function in
         `gimpslope.stones`; a size law is a table with its name as law. In place of stones
@@ -42,7 +43,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from . import stones as shapes
-from .materials import DruckerPrager, Elastic, Material
+from .materials import DruckerPrager, Elastic, Material, Rigid
 from .method import Method
 from .outline import Outline
 from .recording import Recording
@@ -57,7 +58,7 @@ T = TypeVar("T")
 _TABLES = ("outline", "materials", "stones", "draw", "image", "mesh")
 _NUMBERS = ("cell", "points_per_cell", "gravity")
 _SECTIONS = ("walls", "stages", "method", "recording")
-_LAWS = {"drucker_prager": DruckerPrager, "elastic": Elastic}
+_LAWS = {"drucker_prager": DruckerPrager, "elastic": Elastic, "rigid": Rigid}
 _WALLS = {"fixed": Fixed(), "roller": Roller(), "free": Free()}
 _DRAWS = {"ellipses": shapes.ellipses, "rounds": shapes.rounds, "polygons": shapes.polygons}
 _SIZES = {kind.__name__: kind for kind in (shapes.Uniform, shapes.LogNormal, shapes.PowerLaw)}

@@ -8,6 +8,7 @@ from dataclasses import replace
 from os import PathLike
 
 from . import _check
+from .materials import Deformable
 from .method import Method
 from .recorder import Recorder
 from .recording import Recording
@@ -153,7 +154,8 @@ class Simulation:
 
     def _crossing_time(self) -> float:
         left, bottom, right, top = self.scene.outline.bounds
-        slowest = min(material.wave_speed for material in self.scene.materials)
+        materials = self.scene.materials
+        slowest = min(m.wave_speed for m in materials if isinstance(m, Deformable))
         return 2 * math.hypot(right - left, top - bottom) / slowest
 
     def _first_potential(self) -> float:

@@ -13,6 +13,7 @@ from ._check import FloatArray
 from .ledger import Ledger
 from .materials import Material
 from .method import Method
+from .rigid_stones import RigidStones
 from .scene import Points, Scene
 from .walls import Free, Walls
 
@@ -97,6 +98,7 @@ class Solver:
             _to_core(materials),
             cell=_check.positive("cell", cell),
             origin=tuple(_check.array("origin", origin, (2,)).tolist()),
+            stone=points.stone,
             walls=walls.to_core(_check.array("wall_positions", positions, (4,)).tolist()),
             instruction_set=_check.instance("instruction_set", instruction_set, str, "a name"),
             **method.to_core(),
@@ -171,7 +173,8 @@ class Solver:
 
     def take_rows(self) -> dict[str, npt.NDArray[Any]]:
         """The rows kept since they were last taken, by column, each of shape (k,): time (s), step,
-        those of `Energies`, and with a ledger those of `Ledger` (J/m)."""
+        those of `Energies`, with a ledger those of `Ledger` (J/m), and with rigid stones
+        `rigid_stones`, the states of `RigidStones`, shape (k, m, 9)."""
         rows: dict[str, npt.NDArray[Any]] = self._core.take_rows()
         return rows
 
@@ -211,6 +214,11 @@ class Solver:
         Raises `ValueError` unless the method keeps a ledger.
         """
         return Ledger(**self._core.ledger())
+
+    @property
+    def rigid_stones(self) -> RigidStones:
+        """The stones of rigid material as they are now."""
+        return RigidStones(self._core.body_numbers(), self._core.bodies()[0])
 
     def values(self, name: str, *, single: bool = False) -> npt.NDArray[np.floating[Any]]:
         """A field by the name of its property, such as "velocity", in the order in which the points

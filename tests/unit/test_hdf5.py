@@ -44,7 +44,7 @@ def path(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_root_attributes_describe_the_run(path: Path) -> None:
     with h5py.File(path, "r") as file:
         assert file.attrs["format"] == "gimpslope run"
-        assert file.attrs["format_version"] == 2
+        assert file.attrs["format_version"] == 3
         assert file.attrs["gimpslope_version"] == "0.0.0"
         assert file.attrs["created"].endswith("+00:00")
         assert file.attrs["status"] == "finished"

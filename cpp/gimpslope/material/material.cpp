@@ -29,11 +29,14 @@ std::string in_range(double most, const char* unit) {
 
 double Material::bulk_modulus() const { return young / (3.0 * (1.0 - 2.0 * poisson)); }
 double Material::shear_modulus() const { return young / (2.0 * (1.0 + poisson)); }
-double Material::wave_modulus() const { return bulk_modulus() + 4.0 / 3.0 * shear_modulus(); }
+double Material::wave_modulus() const {
+  return law == LawKind::rigid ? 0.0 : bulk_modulus() + 4.0 / 3.0 * shear_modulus();
+}
 
 void Material::check() const {
   require(density > 0.0 && density < kInfinity, "density", density,
           "positive and finite, in kg/m3");
+  if (law == LawKind::rigid) return;
   require(young > 0.0 && young < kInfinity, "young", young, "positive and finite, in Pa");
   require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "in (-1, 0.5)");
   if (law == LawKind::elastic) return;
@@ -89,6 +92,7 @@ ConeCoefficients cone_coefficients(const Material& m) {
 Law law(const Material& m) {
   const double bulk = m.bulk_modulus(), shear = m.shear_modulus();
   Law result{m.law, m.wave_modulus(), {}};
+  if (m.law == LawKind::rigid) return result;
   DruckerPrager& constants = result.drucker_prager;
   constants.elastic = {bulk - 2.0 / 3.0 * shear, shear};
   if (m.law == LawKind::elastic) return result;

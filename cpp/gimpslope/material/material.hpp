@@ -8,7 +8,7 @@
 
 namespace gimpslope {
 
-enum class LawKind { elastic, drucker_prager };
+enum class LawKind { elastic, drucker_prager, rigid };
 
 /// The Drucker-Prager cones that go by one friction angle: through the outer or inner corners of
 /// the Mohr-Coulomb pyramid, or giving its collapse load in plane strain, with associated flow or
@@ -16,9 +16,9 @@ enum class LawKind { elastic, drucker_prager };
 enum class Cone { outer, inner, plane_strain_associated, plane_strain };
 
 struct Material {
-  double density;  // kg/m3, at the start
-  double young;    // Pa
-  double poisson;
+  double density;        // kg/m3, at the start
+  double young = 0.0;    // Pa; of a rigid one not asked for
+  double poisson = 0.0;  // likewise
   LawKind law = LawKind::elastic;
   double friction = 0.0;  // degrees
   double cohesion = 0.0;  // Pa
@@ -28,7 +28,8 @@ struct Material {
 
   double bulk_modulus() const;   // Pa
   double shear_modulus() const;  // Pa
-  double wave_modulus() const;   // Pa; of uniaxial strain, K + 4G/3
+  double wave_modulus() const;   // Pa; of uniaxial strain, K + 4G/3; of a rigid one 0, for no
+                                 // wave in it limits the step
 
   /// Refuses values out of range with std::invalid_argument.
   void check() const;
@@ -55,8 +56,8 @@ Law law(const Material& material);
 
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Calls act(constants) with the constants of the law that a material follows: the one place that
-/// tells laws apart.
+/// Calls act(constants) with the constants of the law that a deformable material follows: the one
+/// place that tells these apart.
 template <class Act>
 void with_constants(const Law& law, Act act) {
   switch (law.kind) {
@@ -65,6 +66,8 @@ void with_constants(const Law& law, Act act) {
       return;
     case LawKind::drucker_prager:
       act(law.drucker_prager);
+      return;
+    case LawKind::rigid:
       return;
   }
 }

@@ -2,6 +2,7 @@
 // the velocities at its start.
 #pragma once
 
+#include "../sweep/bodies.hpp"
 #include "../sweep/dilatation.hpp"
 #include "../sweep/energies.hpp"
 #include "../sweep/loops.hpp"
@@ -52,6 +53,7 @@ struct Usf {
         });
         reports[slab] = report;
       });
+      if (view.bodies != nullptr) move_bodies<Shape, kOwnDomain>(view, input, thread, reports);
       watch.lap(&Seconds::move);
     });
   }
@@ -63,7 +65,7 @@ struct Usf {
     if (averaged) {
       for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
-          dilatation_block<Shape, kOwnDomain>(view, block);
+          if (!is_rigid(view, block)) dilatation_block<Shape, kOwnDomain>(view, block);
         });
       });
     }
@@ -71,6 +73,10 @@ struct Usf {
       Ledger ledger;
       Energies energies;
       for_each_block(view, slab, [&](const Block& block) {
+        if (is_rigid(view, block)) {
+          if (!averaged) body_force_block<Shape, kOwnDomain>(view, block);
+          return;
+        }
         if (averaged) {
           averaged_stress_block<Shape, kOwnDomain>(view, input, block, ledger);
         } else {
@@ -85,7 +91,11 @@ struct Usf {
     if (averaged) {
       for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
-          averaged_force_block<Shape, kOwnDomain>(view, block);
+          if (is_rigid(view, block)) {
+            body_force_block<Shape, kOwnDomain>(view, block);
+          } else {
+            averaged_force_block<Shape, kOwnDomain>(view, block);
+          }
         });
       });
     }
@@ -93,6 +103,10 @@ struct Usf {
 
   static void move_block(const View<Real>& view, const StepInput& input, const Block& block,
                          Report& report) {
+    if (is_rigid(view, block)) {
+      exchange_block<Shape, kOwnDomain>(view, input, block, report);
+      return;
+    }
     const int begin = block.begin, n = block.end - block.begin;
     Weights<Shape, Need::values> weights;
     evaluate<Shape, kOwnDomain>(view, begin, n, weights);

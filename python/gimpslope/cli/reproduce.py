@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 from ..studies import reference, reproduce
 from .commands import Commands
-from .options import add_readings
+from .options import add_readings, add_stone_model
 from .paths import make_directory
 
 
@@ -29,13 +29,7 @@ def add(commands: Commands) -> None:
         metavar="H",
         help="m (default: %(default)s)",
     )
-    parser.add_argument(
-        "--stone-modulus",
-        type=float,
-        default=reference.STONE_MODULUS,
-        metavar="PA",
-        help="Young's modulus of the stones, Pa (default: 20e9, the paper's); lower is faster",
-    )
+    add_stone_model(parser)
     parser.add_argument(
         "--seed",
         type=int,
@@ -90,6 +84,7 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         options.output,
         readings=list(dict.fromkeys(options.reading)),
         cell=options.cell,
+        stone_model=options.stone_model or "deformable",
         stone_modulus=options.stone_modulus,
         seeds=options.seed,
         duration=options.duration,

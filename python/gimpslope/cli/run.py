@@ -17,6 +17,7 @@ from ..setup import Setup
 from ..simulation import Simulation
 from ..studies import comparison, reference
 from .commands import Commands
+from .options import add_stone_model
 from .paths import check_file
 
 _OF_SLOPES: dict[str, Any] = {
@@ -24,12 +25,15 @@ _OF_SLOPES: dict[str, Any] = {
     "cell": 0.1,
     "duration": 10.0,
     "seed": 1,
-    "stone_modulus": reference.STONE_MODULUS,
+    "stone_model": "deformable",
+    "stone_modulus": None,
     "time_step": None,
     "courant": None,
     "volumetric_strain": "point",
 }
 """Options that only the slopes of the study have, with their defaults."""
+
+_OF_STONES = {"seed", "stone_model", "stone_modulus"}
 
 
 def add(commands: Commands) -> None:
@@ -53,12 +57,7 @@ def add(commands: Commands) -> None:
         "--duration", type=float, metavar="S", help="of the slide, s (default: 10)"
     )
     of_slopes.add_argument("--seed", type=int, metavar="N", help="of the stones (default: 1)")
-    of_slopes.add_argument(
-        "--stone-modulus",
-        type=float,
-        metavar="PA",
-        help="Young's modulus of the stones, Pa (default: 20e9, the paper's); lower is faster",
-    )
+    add_stone_model(of_slopes)
     step = of_slopes.add_mutually_exclusive_group()
     step.add_argument("--time-step", type=float, metavar="S", help="fixed, s")
     step.add_argument("--courant", type=float, metavar="C", help="Courant number (default: 0.4)")
@@ -107,7 +106,7 @@ def _setup(options: argparse.Namespace, repeated: Run | None) -> Setup:
     given = {name: getattr(options, name) for name in _OF_SLOPES}
     given = {name: value for name, value in given.items() if value is not None}
     if options.slope in reference.SLOPES:
-        if options.slope == "soil" and (unused := sorted({"seed", "stone_modulus"} & set(given))):
+        if options.slope == "soil" and (unused := sorted(_OF_STONES & set(given))):
             raise ValueError(f"{_option(unused[0])} must be left out for soil, which has no stones")
         return reference.setup(options.slope, **(_OF_SLOPES | given), threads=options.threads or 1)
     if given:

@@ -20,6 +20,7 @@ _AREAS = (
     ("friction", "friction at walls", "#d94801"),
     ("impact", "impact at walls", "#f7a35c"),
     ("damping", "damping", "#7f7f7f"),
+    ("rigidity", "rigidity of stones", "#b5651d"),
     ("transfer", "transfer between points and grid", "#6a51a3"),
     ("kinetic", "kinetic", "#2171b5"),
     ("elastic", "elastic", "#41ab5d"),

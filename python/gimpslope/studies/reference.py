@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 from .. import _check
-from ..materials import Cone, DruckerPrager
+from ..materials import Cone, DruckerPrager, Material, Rigid
 from ..method import Method, Precision, VolumetricStrain
 from ..outline import Outline
 from ..recording import Recording
@@ -64,8 +64,12 @@ PAPER = MappingProxyType(
 """The paper's figures for each slope, in SI units by the names of a run's summary, with the labels
 of horizontal and vertical displacement put right; of slope A's speed it says "exceeding 3 m/s"."""
 
-STONE_MODULUS = 20e9
-"""Young's modulus of the paper's stones, Pa."""
+STONE_MODULI = MappingProxyType({"deformable": 20e9, "softened": 0.5e9})
+STONE_MODELS = (*STONE_MODULI, "rigid")
+"""How stones are modelled: as the paper has them; with a Young's modulus (Pa) so low that the step
+may be six times longer; and not deforming at all."""
+
+_ROCK_DENSITY = 2400.0  # kg/m3
 
 RECORDING = Recording(
     snapshot_times=(0.5, 1.0, *(round(1.4 + 0.05 * k, 2) for k in range(15)), 3.5, 5.0, 10.0)
@@ -86,15 +90,24 @@ def soil(reading: str = "identified") -> DruckerPrager:
     )
 
 
-def rock(reading: str = "identified", modulus: float = STONE_MODULUS) -> DruckerPrager:
-    """The stone of the paper's table 1, with another Young's modulus (Pa) where one is given."""
+def rock(
+    reading: str = "identified", model: str = "deformable", modulus: float | None = None
+) -> Material:
+    """The stone of the paper's table 1, in one of `STONE_MODELS`, with another Young's modulus (Pa)
+    where one is given."""
+    cone = _reading(reading).cone
+    _check.one_of("stone_model", model, STONE_MODELS)
+    if model == "rigid":
+        if modulus is not None:
+            raise ValueError(f"stone_modulus must be left out of rigid stones, got {modulus!r}")
+        return Rigid(_ROCK_DENSITY)
     return DruckerPrager(
-        density=2400,
-        young=modulus,
+        density=_ROCK_DENSITY,
+        young=STONE_MODULI[model] if modulus is None else modulus,
         poisson=0.2,
         friction=42,
         cohesion=900e3,
-        cone=_reading(reading).cone,
+        cone=cone,
     )
 
 
@@ -104,7 +117,8 @@ def slope(
     cell: float = 0.1,
     *,
     seed: int = 1,
-    stone_modulus: float = STONE_MODULUS,
+    stone_model: str = "deformable",
+    stone_modulus: float | None = None,
 ) -> Scene:
     """One of the four slopes, 9 m high, 45 degrees: 23,490 points at 0.1 m.
 
@@ -114,7 +128,8 @@ def slope(
     reading : one of `READINGS`
     cell : side of a grid cell, m
     seed : of the places and shapes of the stones
-    stone_modulus : Young's modulus of the stones, Pa
+    stone_model : one of `STONE_MODELS`
+    stone_modulus : Young's modulus of stones that are not rigid, Pa; None: that of the model
     """
     _check.one_of("slope", name, tuple(SLOPES))
     walls = _reading(reading).walls
@@ -124,7 +139,7 @@ def slope(
         Outline.slope(),
         soil(reading),
         stones=reference_stones.stones(name, seed),
-        stone=rock(reading, stone_modulus),
+        stone=rock(reading, stone_model, stone_modulus),
         cell=cell,
         walls=walls,
     )
@@ -159,7 +174,8 @@ def setup(
     cell: float = 0.1,
     duration: float = 10.0,
     seed: int = 1,
-    stone_modulus: float = STONE_MODULUS,
+    stone_model: str = "deformable",
+    stone_modulus: float | None = None,
     courant: float | None = None,
     time_step: float | None = None,
     threads: int = 1,
@@ -168,7 +184,14 @@ def setup(
     """All of a run of one of the four slopes, its slide of a duration in s; the rest as in `slope`
     and `method`."""
     return Setup(
-        slope(name, reading, cell, seed=seed, stone_modulus=stone_modulus),
+        slope(
+            name,
+            reading,
+            cell,
+            seed=seed,
+            stone_model=stone_model,
+            stone_modulus=stone_modulus,
+        ),
         method(
             reading,
             courant=courant,

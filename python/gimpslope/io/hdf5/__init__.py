@@ -1,4 +1,4 @@
-"""The run file: HDF5, format 2, readable with h5py alone.
+"""The run file: HDF5, format 3, readable with h5py alone.
 
 Root attributes
     format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
@@ -11,7 +11,7 @@ Root attributes
     starts, those of the unloaded slope.
 /energy
     one column a dataset, all of the same length, rows of all stages; with the columns of the ledger
-    where the method keeps one.
+    where the method keeps one, and with rigid stones their motion, rigid_stones.
 /snapshots
     the slide at chosen times, first at its start; axis 0 is time; 32-bit but for the positions.
 /final
@@ -31,6 +31,7 @@ from .layout import (
     FORMAT_VERSION,
     LEDGER,
     POINTS,
+    RIGID_STONES,
     SETUP,
     SNAPSHOT_FIELDS,
     STAGES,
@@ -44,6 +45,7 @@ from .reader import (
     read_final,
     read_ledger,
     read_points,
+    read_rigid_stones,
     read_snapshot,
     read_snapshot_times,
     read_trigger,
@@ -57,6 +59,7 @@ __all__ = [
     "FORMAT_VERSION",
     "LEDGER",
     "POINTS",
+    "RIGID_STONES",
     "SETUP",
     "SNAPSHOT_FIELDS",
     "STAGES",
@@ -68,6 +71,7 @@ __all__ = [
     "read_final",
     "read_ledger",
     "read_points",
+    "read_rigid_stones",
     "read_snapshot",
     "read_snapshot_times",
     "read_trigger",

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 Arrays = dict[str, NDArray[Any]]
 
 FORMAT = "gimpslope run"
-FORMAT_VERSION = 2
+FORMAT_VERSION = 3
 STAGES = ("gravity", "settling", "slide")
 STATUSES = ("running", "finished", "interrupted", "failed")
 SETUP = ("scene", "method", "stages", "recording")
@@ -53,7 +53,17 @@ LEDGER = {
     "external": Quantity("f8", (), "J/m", "work of body forces and of the ramp of gravity"),
     "hypoelastic": Quantity("f8", (), "J/m", "taken by the rate form of the elastic law"),
     "integration": Quantity("f8", (), "J/m", "residue of the finite time step"),
+    "rigidity": Quantity("f8", (), "J/m", "lost by the points of rigid stones that move as one"),
 }
+
+RIGID_STONES = "rigid_stones"
+RIGID_STATE = Quantity(
+    "f8",
+    (9,),
+    "m, rad, m/s, rad/s, N s/m, N m s/m",
+    "x and y of the centre, angle, velocity x and y, spin, and impulse x and y and angular impulse "
+    "of all but gravity since the clock was last set to zero, of the stones in attribute number",
+)
 
 FIELDS = {
     "position": Quantity("f8", (2,), "m", "position (x, y)"),

@@ -23,6 +23,7 @@ from .layout import (
     JSON_ATTRIBUTES,
     LEDGER,
     POINTS,
+    RIGID_STONES,
     Arrays,
     Quantity,
 )
@@ -89,6 +90,18 @@ def read_ledger(path: str | PathLike[str]) -> Arrays:
         columns = _read_all(file, "energy", LEDGER) if kept else {}
     length = min((len(column) for column in columns.values()), default=0)
     return {name: column[:length] for name, column in columns.items()}
+
+
+@_patient
+def read_rigid_stones(path: str | PathLike[str]) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
+    """Numbers of the rigid stones (m,) and, in all stages, their states (k, m, 9), as `RIGID_STATE`
+    says; none: empty arrays."""
+    with _opened(path) as file:
+        energy = file["energy"]
+        if RIGID_STONES not in energy:
+            return np.empty(0, dtype=np.int32), np.empty((len(energy["time"]), 0, 9))
+        number: NDArray[np.int32] = energy[RIGID_STONES].attrs["number"]
+        return number, energy[RIGID_STONES][...]
 
 
 @_patient

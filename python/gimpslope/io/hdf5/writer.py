@@ -23,6 +23,8 @@ from .layout import (
     FORMAT_VERSION,
     LEDGER,
     POINTS,
+    RIGID_STATE,
+    RIGID_STONES,
     SETUP,
     SNAPSHOT_FIELDS,
     STATUSES,
@@ -32,6 +34,7 @@ from .layout import (
 from .process import still_writing, this_process
 
 _ENERGY_CHUNK = 1024
+_STONES_CHUNK = 32
 _TIME_CHUNK = 128
 
 
@@ -48,6 +51,7 @@ class RunWriter:
     version : of gimpslope
     instruction_set, threads : what the solver runs on
     ledger : whether the energy rows have the columns of `LEDGER` too
+    rigid_stones : numbers of the rigid stones; with any, rows have the column `RIGID_STONES` too
     overwrite : whether a file that is not empty may be replaced
 
     Raises
@@ -65,10 +69,14 @@ class RunWriter:
         instruction_set: str,
         threads: int,
         ledger: bool = False,
+        rigid_stones: Sequence[int] = (),
         overwrite: bool = False,
     ) -> None:
         self.path = Path(path)
         self._columns = ENERGY | (LEDGER if ledger else {})
+        if len(rigid_stones):
+            shape = (len(rigid_stones), *RIGID_STATE.shape)
+            self._columns |= {RIGID_STONES: RIGID_STATE._replace(shape=shape)}
         self._rows: list[Arrays] = []
         self._snapshots: list[tuple[float, Arrays]] = []
         self._thread = ThreadPoolExecutor(max_workers=1)
@@ -89,7 +97,10 @@ class RunWriter:
             file.attrs["process"] = this_process()
             energy = file.create_group("energy")
             for name, quantity in self._columns.items():
-                _create_growing(energy, name, quantity, chunk=_ENERGY_CHUNK)
+                chunk = _STONES_CHUNK if name == RIGID_STONES else _ENERGY_CHUNK
+                _create_growing(energy, name, quantity, chunk=chunk)
+            if len(rigid_stones):
+                energy[RIGID_STONES].attrs["number"] = rigid_stones
 
     def write_points(
         self,

@@ -65,7 +65,8 @@ def plan(
     *,
     readings: Sequence[str] = tuple(reference.READINGS),
     cell: float = CELL,
-    stone_modulus: float = reference.STONE_MODULUS,
+    stone_model: str = "deformable",
+    stone_modulus: float | None = None,
     seeds: Sequence[int] = SEEDS,
     duration: float = 10.0,
     time_step: float | None = None,
@@ -80,7 +81,8 @@ def plan(
     directory : for the run files. Finished runs of the same setup and version are taken as they are
     readings : some of `reference.READINGS`
     cell : side of a grid cell, m
-    stone_modulus : Young's modulus of the stones, Pa
+    stone_model : one of `reference.STONE_MODELS`
+    stone_modulus : Young's modulus of stones that are not rigid, Pa; None: that of the model
     seeds : of the draws of stones, each another one
     duration : of the slides, s
     time_step : fixed, s; None: a Courant number of 0.4
@@ -111,6 +113,7 @@ def plan(
                 cell=side,
                 duration=duration,
                 seed=seed,
+                stone_model=stone_model,
                 stone_modulus=stone_modulus,
                 time_step=time_step,
             )

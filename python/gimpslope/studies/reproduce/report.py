@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import markdown as to_html
 import numpy as np
 
+from ...materials import Deformable
 from ...run import Run
 from .. import reference
 from .judging import SOIL, STONES
@@ -105,13 +106,12 @@ def _settings(studies: Sequence[Study]) -> str:
         }
     )
     kind, step = first.method.step
-    modulus = studies[0].runs[STONES[0]][0].scene.materials[-1].young
     seeds = studies[0].seeds[STONES[0]]
     rows += [
         ("cell", f"{first.scene.cell:g} m, {len(first.points):,} points"),
         ("time step", f"{step:g} of the Courant limit" if kind == "courant" else f"{step:g} s"),
         ("slide", f"{first.stages.slide.duration:g} s"),
-        ("Young's modulus of the stones", f"{modulus:g} Pa"),
+        ("model of the stones", _model(studies[0])),
         ("seeds of the stones", ", ".join(map(str, seeds))),
         *((f"{name} stones", _stones(studies[0].runs[name])) for name in STONES),
         ("gimpslope", "; ".join(versions)),
@@ -129,9 +129,13 @@ def _stones(draws: Sequence[Run]) -> str:
 
 def settings_of(one: Study) -> str:
     """In words what the spread between draws depends on."""
-    run = one.runs[STONES[0]][0]
-    modulus = run.scene.materials[-1].young
-    return f"reading {one.reading}, cell {run.scene.cell:g} m, stones of {modulus:g} Pa"
+    cell = one.runs[STONES[0]][0].scene.cell
+    return f"reading {one.reading}, cell {cell:g} m, stones of {_model(one)}"
+
+
+def _model(one: Study) -> str:
+    stone = one.runs[STONES[0]][0].scene.stone
+    return f"{stone.young:g} Pa" if isinstance(stone, Deformable) else "no deformation"
 
 
 def _chance(one: Study) -> str:
