@@ -139,15 +139,17 @@ class Simulation:
         recorder.release(released, self.settling_time, self.settling_ratio)
 
     def slide(self, recorder: Recorder) -> None:
-        """The slope slides, until its kinetic energy has fallen to `rest_ratio` of its peak."""
+        """The slope slides, for its duration or until it rests."""
         slide = self.stages.slide
         recorder.start("slide", slide.duration)
-        peak = 0.0
+        peak = calm_since = 0.0
         rows = 1 if slide.rest_ratio > 0 else None
         while self.solver.time < slide.duration:
-            kinetic = recorder.advance(slide.duration, rows=rows)["kinetic"]
-            peak = max(peak, kinetic)
-            if kinetic < slide.rest_ratio * peak:
+            row = recorder.advance(slide.duration, rows=rows)
+            peak = max(peak, row["kinetic"])
+            if not slide.rests(row["kinetic"], peak, row["max_speed"]):
+                calm_since = self.solver.time
+            elif self.solver.time - calm_since >= slide.rest_time:
                 recorder.detail = f"at rest after {self.solver.time:.6g} s"
                 return
         recorder.detail = f"slid for {self.solver.time:.6g} s"

@@ -84,26 +84,47 @@ class Settling(Record):
 class Slide(Record):
     """Last stage: plasticity is switched on, without damping; time counts from zero.
 
+    It ends before its duration once the slope has been at rest for `rest_time`: the kinetic energy
+    below `rest_ratio` times its peak, and the fastest point slower than `rest_speed`. At a single
+    moment both may vanish in full swing.
+
     Parameters
     ----------
     duration : time simulated at most, s, > 0
-    rest_ratio : share of its peak to which the kinetic energy must fall for the slide to end
-        before that, in [0, 1); 0: it never does
+    rest_ratio : in [0, 1); 0: the slide lasts its duration
+    rest_speed : m/s, > 0; None: the kinetic energy alone says
+    rest_time : s, >= 0; rows of energy are looked at, so that an interval between two may be added
 
     Raises
     ------
     TypeError, ValueError
-        If a parameter is not a finite number in its range.
+        If a parameter is not a finite number in its range, or a speed is given without a ratio.
     """
 
     duration: float = 10.0
     rest_ratio: float = 0.0
+    rest_speed: float | None = None
+    rest_time: float = 0.1
 
     def __post_init__(self) -> None:
         self._store(
             duration=_check.positive("duration", self.duration),
             rest_ratio=_check.in_range("rest_ratio", self.rest_ratio, 0, 1, "[)"),
+            rest_time=_check.not_negative("rest_time", self.rest_time),
         )
+        if self.rest_speed is None:
+            return
+        self._store(rest_speed=_check.positive("rest_speed", self.rest_speed))
+        if self.rest_ratio == 0:
+            raise ValueError(
+                f"rest_speed must be None unless rest_ratio is positive, got {self.rest_speed}"
+            )
+
+    def rests(self, kinetic: float, peak: float, max_speed: float) -> bool:
+        """Whether a kinetic energy, beside its peak so far (J/m), and a largest speed (m/s) are
+        those of a slope at rest."""
+        slow = self.rest_speed is None or max_speed < self.rest_speed
+        return slow and kinetic < self.rest_ratio * peak
 
 
 @dataclass(frozen=True)

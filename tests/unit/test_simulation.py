@@ -215,13 +215,30 @@ def test_duration_overrides_that_of_the_stages(tmp_path: Path) -> None:
 
 
 def test_slide_ends_at_rest(tmp_path: Path) -> None:
-    stages = replace(STAGES, slide=gs.Slide(5.0, rest_ratio=0.7))
+    stages = replace(STAGES, slide=gs.Slide(5.0, rest_ratio=0.7, rest_time=0.0))
     run = simulate(tmp_path / "run.h5", stages=stages)
     share = run.energy.kinetic / np.maximum.accumulate(run.energy.kinetic)
     assert share[-1] < 0.7 and (share[:-1] >= 0.7).all()
     assert 1.0 < run.final.time < 5.0
     assert run.status == "finished" and "at rest" in run.status_detail
     assert run.final.time == run.energy.time[-1]
+
+
+def test_slide_ends_when_the_fastest_point_and_the_energy_have_rested(tmp_path: Path) -> None:
+    slide = gs.Slide(5.0, rest_ratio=0.7, rest_speed=1.0, rest_time=0.2)
+    run = simulate(tmp_path / "run.h5", stages=replace(STAGES, slide=slide))
+    energy = run.energy
+    rests = [
+        slide.rests(kinetic, peak, speed)
+        for kinetic, peak, speed in zip(
+            energy.kinetic, np.maximum.accumulate(energy.kinetic), energy.max_speed, strict=True
+        )
+    ]
+    last_unrest = energy.time[np.flatnonzero(~np.array(rests))[-1]]
+    interval = energy.time[-1] - energy.time[-2]
+    assert 0.2 - 1e-9 <= energy.time[-1] - last_unrest < 0.2 + 1.01 * interval
+    assert energy.max_speed[-1] < 1.0 < energy.max_speed.max()
+    assert run.final.time < 5.0 and "at rest" in run.status_detail
 
 
 def test_snapshots_at_the_times_asked_for(finished: gs.Run) -> None:

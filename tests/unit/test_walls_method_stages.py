@@ -183,6 +183,8 @@ def test_damping_for_the_kernel(settling, arguments):
         (Slide, "duration", True, TypeError),
         (Slide, "rest_ratio", -0.1, ValueError),
         (Slide, "rest_ratio", 1.0, ValueError),
+        (Slide, "rest_speed", 0.1, ValueError),
+        (Slide, "rest_time", -0.1, ValueError),
         (Stages, "slide", 10.0, TypeError),
         (Stages, "gravity", "Slide", TypeError),
     ],
