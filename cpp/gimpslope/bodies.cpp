@@ -1,11 +1,12 @@
 #include "bodies.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace gimpslope {
 
-Bodies::Bodies(std::span<const std::int32_t> number_of_point) {
+Bodies::Bodies(std::span<const std::int32_t> number_of_point, int threads) : threads_(threads) {
   std::vector<std::int32_t> order(number_of_point.size());
   std::iota(order.begin(), order.end(), 0);
   std::erase_if(order, [&](std::int32_t k) { return number_of_point[k] < 0; });
@@ -20,13 +21,20 @@ Bodies::Bodies(std::span<const std::int32_t> number_of_point) {
     given_.push_back(point);
   }
   begin_.push_back(static_cast<std::int32_t>(given_.size()));
-  member_.resize(given_.size());
-  for (auto& offset : offset_) offset.resize(given_.size());
-  mass_.resize(numbers_.size());
-  inertia_.resize(numbers_.size());
-  states_.resize(numbers_.size());
-  reports_.resize(numbers_.size());
-  for (auto& values : exchange_) values.resize(number_of_point.size());
+  const std::size_t points = given_.size(), bodies = numbers_.size();
+  member_.resize(points);
+  volume_.resize(points);
+  for (int c = 0; c < 2; ++c) {
+    offset_[c].resize(points);
+    half_length_[c].resize(points);
+  }
+  for (auto* values : {&mass_, &inertia_, &radius_}) values->resize(bodies);
+  states_.resize(bodies);
+  reports_.resize(bodies);
+  held_.resize(bodies);
+  reaches_.resize(bodies);
+  // Each of the walls in two places, and any other body as a rule once.
+  contacts_.resize(16 * bodies);
 }
 
 void Bodies::find(const Points& points) {
@@ -36,51 +44,81 @@ void Bodies::find(const Points& points) {
                  [&](std::int32_t point) { return place[point]; });
 }
 
-void Bodies::take_shape(const Points& points) {
+void Bodies::take_shape(const Points& points, double half_length, double cell) {
+  if (empty()) return;
   find(points);
   const double* mass = points.mass[0];
+  double widest = 0.0;
   for (std::size_t b = 0; b < states_.size(); ++b) {
+    const int begin = begin_[b], end = begin_[b + 1];
     BodyState& state = states_[b];
-    double sum[2] = {}, inertia = 0.0;
-    mass_[b] = 0.0;
-    for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
-      mass_[b] += mass[member_[k]];
-      for (int c = 0; c < 2; ++c) sum[c] += mass[member_[k]] * points.position[c][member_[k]];
-    }
-    for (int c = 0; c < 2; ++c) {
-      state.centre[c] = sum[c] / mass_[b];
-      for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
-        offset_[c][k] = points.position[c][member_[k]] - state.centre[c];
-        inertia += mass[member_[k]] * offset_[c][k] * offset_[c][k];
+    double sum[2] = {};
+    mass_[b] = inertia_[b] = radius_[b] = state.angle = 0.0;
+    for (int k = begin; k < end; ++k) {
+      const int m = member_[k];
+      mass_[b] += mass[m];
+      volume_[k] = points.volume[0][m];
+      for (int c = 0; c < 2; ++c) {
+        sum[c] += mass[m] * points.position[c][m];
+        half_length_[c][k] = points.half_length.empty() ? half_length : points.half_length[c][m];
       }
     }
-    inertia_[b] = inertia;
-    state.angle = 0.0;
+    for (int c = 0; c < 2; ++c) state.centre[c] = sum[c] / mass_[b];
+    for (int k = begin; k < end; ++k) {
+      double square = 0.0, own = 0.0;  // squared distances from the centre, and of half a side
+      for (int c = 0; c < 2; ++c) {
+        offset_[c][k] = points.position[c][member_[k]] - state.centre[c];
+        square += offset_[c][k] * offset_[c][k];
+        own += half_length_[c][k] * half_length_[c][k];
+      }
+      inertia_[b] += mass[member_[k]] * (square + own / 3.0);
+      radius_[b] = std::max(radius_[b], std::sqrt(square) + std::sqrt(own));
+    }
+    widest = std::max(widest, radius_[b]);
   }
+  // Shape functions reach two cells beyond a domain at most.
+  window_ = 2 * static_cast<int>(std::ceil(widest / cell)) + 6;
+  nodes_.resize(states_.size() * window_ * window_);
+  shares_.resize(static_cast<std::size_t>(threads_) * window_ * window_);
 }
 
-void Bodies::make_rigid(Points& points) {
+void Bodies::take_motion(Points& points) {
+  if (empty()) return;
+  find(points);
   const double* mass = points.mass[0];
   double *vx = points.velocity[0], *vy = points.velocity[1];
   for (std::size_t b = 0; b < states_.size(); ++b) {
     BodyState& state = states_[b];
-    double px = 0.0, py = 0.0, turn = 0.0;
-    const auto from_centre = [&](int c, int k) {
+    double px = 0.0, py = 0.0, turn = 0.0, of_places = 0.0;
+    const auto arm = [&](int c, int k) {
       return points.position[c][member_[k]] - state.centre[c];
     };
     for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
       const int m = member_[k];
       px += mass[m] * vx[m];
       py += mass[m] * vy[m];
-      turn += mass[m] * (from_centre(0, k) * vy[m] - from_centre(1, k) * vx[m]);
+      turn += mass[m] * (arm(0, k) * vy[m] - arm(1, k) * vx[m]);
+      of_places += mass[m] * (arm(0, k) * arm(0, k) + arm(1, k) * arm(1, k));
     }
     state.velocity[0] = px / mass_[b];
     state.velocity[1] = py / mass_[b];
-    state.spin = inertia_[b] > 0.0 ? turn / inertia_[b] : 0.0;
+    state.spin = of_places > 0.0 ? turn / of_places : 0.0;
     for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
-      vx[member_[k]] = state.velocity[0] - state.spin * from_centre(1, k);
-      vy[member_[k]] = state.velocity[1] + state.spin * from_centre(0, k);
+      vx[member_[k]] = state.velocity[0] - state.spin * arm(1, k);
+      vy[member_[k]] = state.velocity[1] + state.spin * arm(0, k);
     }
+  }
+}
+
+void Bodies::stop() {
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    BodyState& state = states_[b];
+    for (int c = 0; c < 2; ++c) {
+      state.impulse[c] -= mass_[b] * state.velocity[c];
+      state.velocity[c] = 0.0;
+    }
+    state.angular_impulse -= inertia_[b] * state.spin;
+    state.spin = 0.0;
   }
 }
 
@@ -89,23 +127,59 @@ void Bodies::reset_impulses() {
     state.impulse[0] = state.impulse[1] = state.angular_impulse = 0.0;
 }
 
-BodiesView Bodies::view() {
+Energies Bodies::energies(double gravity_x, double gravity_y) const {
+  Energies sum;
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    const BodyState& s = states_[b];
+    const double square = s.velocity[0] * s.velocity[0] + s.velocity[1] * s.velocity[1];
+    sum.kinetic += 0.5 * (mass_[b] * square + inertia_[b] * s.spin * s.spin);
+    sum.potential -= mass_[b] * (gravity_x * s.centre[0] + gravity_y * s.centre[1]);
+    const double cosine = std::cos(s.angle), sine = std::sin(s.angle);
+    for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
+      const double x = cosine * offset_[0][k] - sine * offset_[1][k];
+      const double y = sine * offset_[0][k] + cosine * offset_[1][k];
+      sum.max_speed = std::max(sum.max_speed,
+                               std::hypot(s.velocity[0] - s.spin * y, s.velocity[1] + s.spin * x));
+    }
+  }
+  return sum;
+}
+
+BodiesView Bodies::view(const Points& points, std::size_t nodes) {
+  find(points);
+  owner_.assign(nodes, -1);
   return {static_cast<int>(states_.size()),
           begin_.data(),
           member_.data(),
           {offset_[0].data(), offset_[1].data()},
+          volume_.data(),
+          {half_length_[0].data(), half_length_[1].data()},
           mass_.data(),
           inertia_.data(),
+          radius_.data(),
           states_.data(),
           reports_.data(),
-          {exchange_[0].data(), exchange_[1].data(), exchange_[2].data(), exchange_[3].data()}};
+          held_.data(),
+          nodes_.data(),
+          reaches_.data(),
+          window_,
+          shares_.data(),
+          owner_.data(),
+          contacts_.data(),
+          static_cast<int>(contacts_.size()),
+          &contact_count_};
+}
+
+double Bodies::widest() const {
+  double widest = 0.0;
+  for (const auto& lengths : half_length_)
+    for (const double length : lengths) widest = std::max(widest, 2.0 * length);
+  return widest;
 }
 
 std::int64_t Bodies::bytes() const {
-  std::int64_t total = sizeof(std::int32_t) * (given_.capacity() + member_.capacity()) +
-                       sizeof(double) * (offset_[0].capacity() + offset_[1].capacity());
-  for (const auto& values : exchange_) total += sizeof(double) * values.capacity();
-  return total;
+  return sizeof(double) * (5 * given_.size() + shares_.size()) + sizeof(BodyNode) * nodes_.size() +
+         sizeof(std::int32_t) * (2 * given_.size() + owner_.size());
 }
 
 }  // namespace gimpslope

@@ -11,45 +11,62 @@
 
 namespace gimpslope {
 
-/// The bodies of a scene. Their points are among all others; a body sums over them in the order in
-/// which they were given, so that nothing depends on threads or on how points are sorted.
+/// The bodies of a scene. Their points are among all others but take no part in the sweeps: a body
+/// is where its centre and angle say, and moves them. Whatever sums over points does so in the
+/// order in which they were given, so that nothing depends on threads or on how they are sorted.
 class Bodies {
  public:
   Bodies() = default;
 
   /// Points with the same number make a body, those with a negative one none; bodies are in the
   /// order of their numbers.
-  explicit Bodies(std::span<const std::int32_t> number_of_point);
+  Bodies(std::span<const std::int32_t> number_of_point, int threads);
 
   bool empty() const { return numbers_.empty(); }
   const std::vector<std::int32_t>& numbers() const { return numbers_; }
   const std::vector<BodyState>& states() const { return states_; }
   const std::vector<BodyReport>& reports() const { return reports_; }
 
-  /// Looks up where their points are in storage.
-  void find(const Points& points);
-
-  /// Takes mass, centre and shape of each from its points; its angle is then 0.
-  void take_shape(const Points& points);
+  /// Takes mass, centre and shape of each from its points, which have half-lengths of their own or
+  /// a common one; its angle is then 0.
+  void take_shape(const Points& points, double half_length, double cell);
 
   /// Gives each body the momentum and angular momentum of its points, and them its motion.
-  void make_rigid(Points& points);
+  void take_motion(Points& points);
+
+  /// Ends all motion; what that takes counts as an impulse.
+  void stop();
 
   void reset_impulses();
 
-  BodiesView view();
+  /// Kinetic and potential energy of all, J/m, and the speed of their fastest point, m/s.
+  Energies energies(double gravity_x, double gravity_y) const;
+
+  /// What the sweeps see, for points as they lie in storage and a grid of so many nodes.
+  BodiesView view(const Points& points, std::size_t nodes);
+
+  double widest() const;  // domain of a point, which all keep, m
+
   std::int64_t bytes() const;
 
  private:
+  void find(const Points& points);
+
   std::vector<std::int32_t> numbers_;
   std::vector<std::int32_t> begin_;   // of each body's points in
   std::vector<std::int32_t> given_;   // points in the order they came in,
   std::vector<std::int32_t> member_;  // and where they are in storage
-  std::vector<double> offset_[2];
-  std::vector<double> mass_, inertia_;
+  std::array<std::vector<double>, 2> offset_, half_length_;
+  std::vector<double> volume_;
+  std::vector<double> mass_, inertia_, radius_;
   std::vector<BodyState> states_;
   std::vector<BodyReport> reports_;
-  std::array<std::vector<double>, 4> exchange_;
+  std::vector<HeldBody> held_;
+  std::vector<BodyNode> nodes_;
+  std::vector<std::int32_t> reaches_, owner_;
+  std::vector<double> shares_;
+  std::vector<Contact> contacts_;
+  int contact_count_ = 0, window_ = 0, threads_ = 1;
 };
 
 }  // namespace gimpslope

@@ -40,14 +40,19 @@ Energies Solver::gather_energies() const {
     sum.elastic += report.energies.elastic;
     sum.max_speed = std::max(sum.max_speed, report.energies.max_speed);
   }
-  sum.max_speed = std::sqrt(sum.max_speed);
+  const Energies bodies = bodies_.energies(gravity_.x, gravity_.y);
+  sum.kinetic += bodies.kinetic;
+  sum.potential += bodies.potential;
+  sum.max_speed = std::max(std::sqrt(sum.max_speed), bodies.max_speed);
   return sum;
 }
 
 double Solver::kinetic_energy() const {
   const Points& p = points();
-  double sum = 0.0;
-  for (int k = 0; k < p.size; ++k) sum += 0.5 * p.mass[0][k] * squared_speed(p, k);
+  double sum = bodies_.energies(0.0, 0.0).kinetic;
+  for (int k = 0; k < p.size; ++k)
+    if (laws_[p.material[k]].kind != LawKind::rigid)
+      sum += 0.5 * p.mass[0][k] * squared_speed(p, k);
   return sum;
 }
 
@@ -156,8 +161,8 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
-  if (name == "position") bodies_.take_shape(points_);
-  if (name == "position" || name == "velocity") bodies_.make_rigid(points_);
+  if (name == "position") bodies_.take_shape(points_, half_length_, cell());
+  if (name == "position" || name == "velocity") bodies_.take_motion(points_);
   single_loaded_ = energies_known_ = false;
   if (name != "body_force") nodes_ready_ = speeds_known_ = false;
   if (name == "position") sorted_ = false;

@@ -9,7 +9,8 @@
 //   damping      -dt (local damping force) . vm, and what kinetic damping takes
 //   external     dt (body force, less the part of gravity that a ramp holds back) . vm
 //   transfer     m (v+^2 - v-^2) / 2 of the nodes less the points' gain of kinetic energy
-//   rigidity     the kinetic energy that the points of rigid bodies lose when they move as one
+//   rigidity     what rigid bodies take from the nodes they hold, as impact, less all they gain
+//                but by gravity and body forces
 //   plastic      V s : (plastic strain increment), with the stress s after the return
 //   hypoelastic  -dV w(s before): the rate law stores energy a volume, and volumes change
 //   integration  V w(ds) - dt (internal force - m g) . dv / 2

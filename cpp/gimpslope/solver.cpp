@@ -64,6 +64,8 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
       points_(room_for(given, materials_, method, cell)),
       bodies_(bodies_of(given)) {
   fill(given);
+  bodies_.take_shape(points_, half_length_, cell);
+  bodies_.take_motion(points_);
   if (method_.volumetric_strain == VolumetricStrain::cell_average) grid_.keep_cells();
   if (method_.precision == Precision::single) single_ = std::make_unique<SinglePoints>();
   choose_kernel();
@@ -81,8 +83,6 @@ void Solver::fill(const InitialPoints& given) {
     points_.volume[0][k] = given.volume[k];
     points_.material[k] = given.material[k];
   }
-  bodies_.take_shape(points_);
-  bodies_.make_rigid(points_);
   if (!has_domains(method_.shape)) return;
   const auto& l = given.half_length;
   half_length_ = std::accumulate(l.begin(), l.end(), 0.0) / static_cast<double>(l.size());
@@ -120,7 +120,7 @@ Bodies Solver::bodies_of(const InitialPoints& given) const {
             "stone", number, "a stone of one material where that is rigid");
   require(method_.precision == Precision::double_, "precision", "single",
           "double with rigid stones");
-  return Bodies(body);
+  return Bodies(body, method_.threads);
 }
 
 /// The narrowest compiled basis that holds the widest domain.
@@ -220,8 +220,11 @@ void Solver::prepare() {
     stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
     if (method_.ledger) ledger_rows_.resize(grid_.rows());
-    bodies_.find(points_);
-    bodies_view_ = bodies_.view();
+    if (!bodies_.empty()) {
+      const GridView grid = grid_.view();
+      bodies_view_ = bodies_.view(
+          points_, static_cast<std::size_t>(grid.stride) * static_cast<std::size_t>(grid.rows));
+    }
     travel_ = 0.0;
     steps_since_sort_ = 0;
     sorted_ = true;
@@ -273,10 +276,7 @@ void Solver::step(double dt, double whole, bool wants_energies) {
   }
   for (const BodyReport& report : bodies_.reports()) {
     all.travel = std::max(all.travel, report.travel / grid_.cell());
-    if (method_.ledger) {
-      ledger_.rigidity += report.loss;
-      ledger_.transfer -= report.gain;
-    }
+    if (method_.ledger) add(report.ledger, ledger_);
     if (report.lost >= 0) fail_at(report.lost, dt);
   }
   if (method_.ledger) {
@@ -295,7 +295,8 @@ void Solver::step(double dt, double whole, bool wants_energies) {
   ++steps_;
   travel_ += all.travel + all.growth;
   if (++steps_since_sort_ >= kStepsBetweenSorts || travel_ > kTravelBetweenSorts) sorted_ = false;
-  if (method_.domain_update != DomainUpdate::none) follow_width(all.width);
+  if (method_.domain_update != DomainUpdate::none)
+    follow_width(std::max(all.width, bodies_.widest() / grid_.cell()));
   if (damping_.kinetic) damp_at_peak();
 }
 
@@ -355,7 +356,7 @@ void Solver::damp_at_peak() {
     return;
   }
   points().velocity.fill(0.0);
-  bodies_.make_rigid(points_);
+  bodies_.stop();
   single_loaded_ = false;
   ledger_.damping += kinetic;
   last_kinetic_ = 0.0;
@@ -390,6 +391,8 @@ void Solver::set_time_step(const TimeStep& step) {
 
 void Solver::check_step(const TimeStep& step, const std::vector<Material>& materials) const {
   const bool fixed = step.kind == TimeStep::Kind::fixed;
+  require(fixed || std::isfinite(stable_time_step_of(materials)), "courant", step.value,
+          "given with a deformable material; of rigid stones alone, a fixed time_step");
   const char* name = fixed ? "time_step" : "courant";
   require(step.value > 0.0 && std::isfinite(step.value), name, step.value, "positive and finite");
   const double limit = fixed ? stable_time_step_of(materials) : kCourantLimit;
@@ -405,8 +408,10 @@ void Solver::set_materials(std::vector<Material> materials) {
           ("a list of " + std::to_string(materials_.size())).c_str());
   std::vector<Law> laws = laws_of(materials);
   for (std::size_t m = 0; m < laws.size(); ++m)
-    require((laws[m].kind == LawKind::rigid) == (laws_[m].kind == LawKind::rigid), "materials",
-            "number " + std::to_string(m), "rigid where it was, and only there");
+    require((laws[m].kind == LawKind::rigid) == (laws_[m].kind == LawKind::rigid) &&
+                (laws[m].kind != LawKind::rigid || materials[m].density == materials_[m].density),
+            "materials", "number " + std::to_string(m),
+            "rigid where it was, with the density that it had, and only there");
   // The same stiffness stays accepted, however the density has changed since the step was given.
   if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);
@@ -448,6 +453,8 @@ void Solver::gather_speeds() {
     speeds_.point = std::max(speeds_.point, report.speeds.point);
     speeds_.wave = std::max(speeds_.wave, report.speeds.wave);
   }
+  for (const BodyReport& report : bodies_.reports())
+    speeds_.point = std::max(speeds_.point, report.speed * report.speed);
   speeds_known_ = true;
 }
 

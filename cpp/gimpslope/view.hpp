@@ -73,34 +73,70 @@ struct GridView {
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
 };
 
-/// A rigid body: its points' centre of mass, and what has become of it since the clock was last set
-/// to zero.
+/// A rigid body: where it is, and what has become of it since the clock was last set to zero.
 struct BodyState {
   double centre[2], angle;             // m; radians, counter-clockwise, since its points were given
   double velocity[2], spin;            // m/s; radians a second
   double impulse[2], angular_impulse;  // of all but gravity, N s/m; N m s/m, about the centre
 };
 
+/// A node that a body reaches, and what it is in a step where the body holds it; vectors {x, y}.
+struct BodyNode {
+  std::int32_t node;
+  bool held;
+  double share;                   // of its cell that the body fills
+  double arm[2];                  // from the body's centre, m
+  double mass;                    // of the soil, kg/m
+  double raw[2], before[2];       // velocity of the soil, and with the body, m/s
+  double internal[2], weight[2];  // forces, N/m
+  double body[2], damping[2], full_weight[2];
+};
+
+/// A body with the nodes it holds, as one: its centre seen from that of the body alone.
+struct HeldBody {
+  double mass, inertia;  // kg/m; kg m
+  double centre[2];      // m
+  double velocity[2], spin;
+};
+
 /// What a body reports of a step.
 struct BodyReport {
   double travel = 0.0;     // largest displacement of a point, m
-  double loss = 0.0;       // kinetic energy that its points lose to its rigidity, J/m,
-  double gain = 0.0;       // and have since angular momentum is taken at the nodes
+  double speed = 0.0;      // of the fastest point, m/s
+  Ledger ledger;           // entries of its own and of its nodes
   std::int32_t lost = -1;  // storage index of a point that it would move too far
 };
 
-/// Rigid bodies. Body b has the points member[begin[b]] to member[begin[b + 1]], each at an offset
-/// from its centre before it turned. `exchange` holds what the nodes tell of each point of a body
-/// in a step, in storage order: displacement x, y, and the moments about the point of the nodes'
-/// displacements and changes of velocity.
+/// Where a body meets a wall or, if `other` is not negative, another body.
+struct Contact {
+  std::int32_t body, other;
+  double normal[2];       // from the wall or the other body
+  double place[2];        // m
+  double weight;          // of the nodes that it is the mean of
+  double closing;         // speed that would close the gap in the step, m/s
+  double friction;        // coefficient; infinite where the wall holds what touches it
+  double pushed, rubbed;  // impulses, N s/m
+};
+
+/// Rigid bodies. Body b has the points [begin[b], begin[b + 1]) of these arrays, and reaches at
+/// most window^2 nodes: nodes[b window^2] and so on, `reaches[b]` of them.
 struct BodiesView {
   int count;
-  const std::int32_t *begin, *member;
-  const double* offset[2];
-  const double *mass, *inertia;  // kg/m; kg m
+  const std::int32_t* begin;
+  const std::int32_t* member;                         // storage index of a point
+  const double *offset[2], *volume, *half_length[2];  // from the centre at angle 0, m; m2; m
+  const double *mass, *inertia, *radius;              // of a body: kg/m; kg m; m
   BodyState* state;
   BodyReport* reports;
-  double* exchange[4];
+  HeldBody* held;
+  BodyNode* nodes;
+  std::int32_t* reaches;
+  int window;
+  double* shares;       // window^2 for each thread
+  std::int32_t* owner;  // of each node of the grid: a place in `nodes`, -1 between steps
+  Contact* contacts;
+  int contact_room;
+  int* contact_count;
 };
 
 /// What a step works on. The points are kept in double or single precision; the grid, and all

@@ -19,6 +19,7 @@ struct Usf {
     together(*view.team, [&](int thread) {
       for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
+          if (is_rigid(view, block)) return;
           Weights<Shape, Need::values> weights;
           evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
           scatter_momentum(view, block.begin, block.end - block.begin, weights);
@@ -33,9 +34,14 @@ struct Usf {
       for_each_row(view, thread, [&](int row) {
         start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
       });
+      with_bodies(view, [&](const auto& doubles) {
+        hold_nodes_of_bodies<Shape, kOwnDomain>(doubles, thread);
+      });
       watch.lap(&Seconds::nodes);
       update_stresses(view, thread, input, reports);
       watch.lap(&Seconds::stress);
+      with_bodies(view,
+                  [&](const auto& doubles) { take_forces_of_bodies(doubles, input, thread); });
       for_each_row(view, thread, [&](int row) {
         if (view.ledger != nullptr) {
           finish_nodes<true>(view.grid, row, input, view.ledger + row);
@@ -43,22 +49,29 @@ struct Usf {
           finish_nodes<false>(view.grid, row, input, nullptr);
         }
       });
+      with_bodies(view, [&](const auto& doubles) { move_bodies(doubles, input, thread); });
       watch.lap(&Seconds::nodes);
       for_each_slab(view, thread, [&](int slab) {
         Report report;
         report.ledger = reports[slab].ledger;
         report.energies = reports[slab].energies;
         for_each_block(view, slab, [&](const Block& block) {
-          if (report.lost < 0) move_block(view, input, block, report);
+          if (report.lost < 0 && !is_rigid(view, block)) move_block(view, input, block, report);
         });
         reports[slab] = report;
       });
-      if (view.bodies != nullptr) move_bodies<Shape, kOwnDomain>(view, input, thread, reports);
       watch.lap(&Seconds::move);
     });
   }
 
  private:
+  /// Calls act(view) where there are bodies, which are in double precision only.
+  template <class Act>
+  static void with_bodies(const View<Real>& view, Act act) {
+    if constexpr (!PointsView<Real>::relative)
+      if (view.bodies != nullptr) act(view);
+  }
+
   static void update_stresses(const View<Real>& view, int thread, const StepInput& input,
                               Report* reports) {
     const bool averaged = view.grid.cells != nullptr;
@@ -73,10 +86,7 @@ struct Usf {
       Ledger ledger;
       Energies energies;
       for_each_block(view, slab, [&](const Block& block) {
-        if (is_rigid(view, block)) {
-          if (!averaged) body_force_block<Shape, kOwnDomain>(view, block);
-          return;
-        }
+        if (is_rigid(view, block)) return;
         if (averaged) {
           averaged_stress_block<Shape, kOwnDomain>(view, input, block, ledger);
         } else {
@@ -91,11 +101,7 @@ struct Usf {
     if (averaged) {
       for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
-          if (is_rigid(view, block)) {
-            body_force_block<Shape, kOwnDomain>(view, block);
-          } else {
-            averaged_force_block<Shape, kOwnDomain>(view, block);
-          }
+          if (!is_rigid(view, block)) averaged_force_block<Shape, kOwnDomain>(view, block);
         });
       });
     }
@@ -103,10 +109,6 @@ struct Usf {
 
   static void move_block(const View<Real>& view, const StepInput& input, const Block& block,
                          Report& report) {
-    if (is_rigid(view, block)) {
-      exchange_block<Shape, kOwnDomain>(view, input, block, report);
-      return;
-    }
     const int begin = block.begin, n = block.end - block.begin;
     Weights<Shape, Need::values> weights;
     evaluate<Shape, kOwnDomain>(view, begin, n, weights);

@@ -54,7 +54,8 @@ inline void measure_energies(const View<double>& view, double gravity_x, double 
     take_slabs(view, thread, 0, 1, [&](int slab) {
       Energies sum;
       for_each_block(view, slab, [&](const Block& block) {
-        if (view.laws[block.material].kind != LawKind::rigid) add_elastic_energy(view, block, sum);
+        if (view.laws[block.material].kind == LawKind::rigid) return;
+        add_elastic_energy(view, block, sum);
         add_energy_of_motion(view, block, gravity_x, gravity_y, sum);
       });
       reports[slab].energies = sum;

@@ -46,9 +46,11 @@ inline int first_too_far(int n, double per_cell, const Change& change) {
   return n - 1;
 }
 
-/// Whether no point of a block would go too far; if one does, it is reported as lost.
+/// New places, and velocities (1 - alpha) v + change. The points of a block move together or, if
+/// one of them would go too far, not at all.
 template <class Real>
-bool go_near(const View<Real>& view, int begin, int n, const Change& change, Report& report) {
+void move_points(const View<Real>& view, int begin, int n, double alpha, const Change& change,
+                 Report& report) {
   double largest = 0.0, sum = 0.0;  // the sum is NaN if any change is
 #pragma omp simd reduction(max : largest) reduction(+ : sum)
   for (int k = 0; k < n; ++k) {
@@ -61,30 +63,14 @@ bool go_near(const View<Real>& view, int begin, int n, const Change& change, Rep
   const double travel = per_cell * largest;
   if (!(travel <= kFarthestStep && std::fabs(sum) <= kHuge)) {
     report.lost = begin + first_too_far(n, per_cell, change);
-    return false;
+    return;
   }
   report.travel = travel > report.travel ? travel : report.travel;
-  return true;
-}
-
-/// Velocities become keep v + change: books the gain of kinetic energy as what the nodes give.
-template <class Real>
-void book_gain(const View<Real>& view, int begin, int n, double keep, const Change& change,
-               Report& report) {
-  if (view.ledger != nullptr)
-    report.ledger.transfer -= kinetic_gain(view.points, begin, n, keep, change.vx, change.vy);
-}
-
-/// New places, and velocities (1 - alpha) v + change. The points of a block move together or, if
-/// one of them would go too far, not at all.
-template <class Real>
-void move_points(const View<Real>& view, int begin, int n, double alpha, const Change& change,
-                 Report& report) {
-  if (!go_near(view, begin, n, change, report)) return;
   const PointsView<Real>& p = view.points;
   Real *px = p.x + begin, *py = p.y + begin, *vx = p.vx + begin, *vy = p.vy + begin;
   const double keep = 1.0 - alpha;
-  book_gain(view, begin, n, keep, change, report);
+  if (view.ledger != nullptr)
+    report.ledger.transfer -= kinetic_gain(p, begin, n, keep, change.vx, change.vy);
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
     px[k] += change.x[k];

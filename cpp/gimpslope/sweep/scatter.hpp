@@ -89,16 +89,6 @@ void scatter_body_forces(const View<Real>& view, int begin, int n,
   }
 }
 
-/// The same for a block without stresses of its own.
-template <class Shape, bool kOwnDomain, class Real>
-void body_force_block(const View<Real>& view, const Block& block) {
-  if (view.points.body_force[0] == nullptr) return;
-  const int begin = block.begin, n = block.end - block.begin;
-  Weights<Shape, Need::gradients> weights;
-  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  scatter_body_forces(view, begin, n, weights);
-}
-
 /// -V / h times the stresses in the plane, of the points of a block.
 struct PointForces {
   alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
