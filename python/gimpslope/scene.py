@@ -10,6 +10,7 @@ from typing import cast
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 
 from . import _check
 from ._check import FloatArray
@@ -93,8 +94,8 @@ class Scene(Record):
     ------
     TypeError, ValueError
         If a parameter is of the wrong type or out of its range, if a stone overlaps another, leaves
-        the slope or is too small to hold a point, if no point is inside the slope, or if a right or
-        top wall is off the grid lines.
+        the slope or holds no point, if the slope holds none, or if a right or top wall is off the
+        grid lines.
     """
 
     outline: Outline
@@ -171,8 +172,9 @@ class Scene(Record):
         counts = np.bincount(numbers[numbers >= 0], minlength=len(self._stones))
         for number in np.flatnonzero(counts == 0).tolist():
             raise ValueError(
-                f"stones[{number}] must hold a point, got none at the spacing of "
-                f"{self.spacing:.6g} m: its area is {self._stones[number].area:.6g} m2"
+                f"cell must be small enough for a point in stones[{number}], got {self.cell:.6g} m "
+                f"with a stone of {self._stones[number].area:.3g} m2; {self._sure_cell():.2g} m or "
+                "less is sure to do for every stone"
             )
         kinds = [self.materials.index(stone.material or self.stone) for stone in self._stones]
         material = np.array([*kinds, 0], dtype=np.int32)[numbers]
@@ -189,6 +191,16 @@ class Scene(Record):
     @property
     def _stones(self) -> Stones:
         return cast(Stones, self.stones)
+
+    def _sure_cell(self) -> float:
+        """Side of a cell that puts a point into every stone, wherever the grid begins, m.
+
+        A square lattice has a point in every circle whose radius is its spacing over root two or
+        more; 5 % less leaves room for rounding.
+        """
+        shapes = [shape.polygon for shape in self._stones.shapes]
+        radius = float(shapely.length(shapely.maximum_inscribed_circle(shapes)).min())
+        return 0.95 * math.sqrt(2 * self.points_per_cell) * radius
 
     def _check_stones(self) -> None:
         self._store(stones=Stones(self.stones) if type(self.stones) is not Stones else self.stones)

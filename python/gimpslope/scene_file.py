@@ -11,7 +11,7 @@
     axes = [0.86, 0.34]
 
 Tables and keys
-    cell, points_per_cell, gravity : of `Scene`
+    cell, which is needed, points_per_cell, gravity : of `Scene`
     outline : height, crest, angle of `Outline.slope`, or vertices
     materials : a table a material, "soil" and others by any name, with the keys of `DruckerPrager`,
         or of `Elastic` or `Rigid` where law is "elastic" or "rigid". "stone" is that of stones that
@@ -67,7 +67,7 @@ _STAGES = {"gravity": Gravity, "settling": Settling, "slide": Slide}
 
 def load(path: str | PathLike[str]) -> Setup:
     """The setup in a run file (.h5), or in a scene file, which `read` tells more of."""
-    return Run(path).setup if Path(path).suffix == ".h5" else read(path)
+    return Run(path).setup if Path(path).suffix.lower() == ".h5" else read(path)
 
 
 def read(path: str | PathLike[str]) -> Setup:
@@ -94,6 +94,8 @@ def read(path: str | PathLike[str]) -> Setup:
 
 def _setup(given: _Table, folder: Path) -> Setup:
     _known("the scene file", given, (*_NUMBERS, *_TABLES, *_SECTIONS))
+    if "cell" not in given:
+        raise ValueError("the scene file needs 'cell', which is missing")
     materials = _materials(given)
     outline, stones, used = _section(given, materials, folder)
     for_the_rest = {"stone"} if _some_name_none(stones) else set()
@@ -154,9 +156,19 @@ def _section(
 
 
 def _outline(keys: _Table) -> Outline:
-    if "vertices" in keys:
-        return _made("outline", Outline, keys)
-    return _made("outline", Outline.slope, keys)
+    return _made("outline", _shape("outline", Outline.slope, keys), keys)
+
+
+def _shape(where: str, other: Callable[..., T], keys: _Table) -> Callable[..., Outline | T]:
+    """What makes a shape of these keys: of vertices an Outline, without them another function."""
+    if "vertices" not in keys:
+        return other
+    names = list(inspect.signature(other).parameters)
+    if set(names) & set(keys):
+        raise ValueError(
+            f"{where} must have either vertices or {', '.join(names)}, got {', '.join(keys)}"
+        )
+    return Outline
 
 
 def _listed(
@@ -173,8 +185,8 @@ def _listed(
 
 def _stone(materials: Mapping[str, Material], keys: _Table) -> shapes.Stone:
     material = _named(keys.pop("material", None), materials)
-    kind: Callable[..., shapes.Shape] = Outline if "vertices" in keys else shapes.Ellipse
-    return shapes.Stone(_made("a stone", kind, keys), material)
+    shape = _shape("a stone", shapes.Ellipse, keys)
+    return shapes.Stone(_made("a stone", shape, keys), material)
 
 
 def _drawn(
@@ -228,7 +240,7 @@ def _walls(keys: _Table) -> Walls:
                 raise ValueError(f"{side} needs 'coulomb', which is missing")
             sides[side] = Coulomb(value["coulomb"])
         else:
-            sides[side] = _choice(side, value, _WALLS)
+            sides[side] = _choice(side, value, _WALLS, " or { coulomb = ... }")
     return _made("walls", Walls, sides)
 
 
@@ -278,7 +290,8 @@ def _known(where: str, keys: _Table, known: Any) -> None:
         )
 
 
-def _choice(name: str, value: Any, choices: Mapping[str, Any]) -> Any:
+def _choice(name: str, value: Any, choices: Mapping[str, Any], more: str = "") -> Any:
     if not isinstance(value, str) or value not in choices:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, choices))}, got {value!r}")
+        known = ", ".join(map(repr, choices)) + more
+        raise ValueError(f"{name} must be one of {known}, got {value!r}")
     return choices[value]

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from .analysis import phases_of
 from .energy import Energy
 from .io import hdf5
 from .scene import Scene
@@ -34,17 +36,18 @@ _READABLE = {
     "wall_seconds": "{:.1f} s",
     "point_steps_per_second": "{:,.0f} /s",
 }
+_AT_PEAK = ("time_of_peak", "speed_at_peak")
 
 
 def summarise(run: Run) -> dict[str, float | int | None]:
     """The main results of a run from the data written so far, in SI units.
 
     Keys: points, steps (of all stages), stones, smallest_gap_in_cells (between two stones; those
-    closer than two cells share nodes and act as one), peak_kinetic_energy (J/m), time_of_peak,
-    speed_at_peak (of the fastest point then), max_speed, max_displacement_total, _horizontal and
-    _vertical, toe (largest x of a point in the end), final_kinetic_energy (J/m), simulated_time
-    (of the slide), wall_seconds (spent stepping) and point_steps_per_second. What the run has not
-    reached, or not recorded, is None.
+    closer than two cells share nodes), peak_kinetic_energy (J/m, the largest so far), time_of_peak,
+    speed_at_peak (of the fastest point then; both None while the kinetic energy still grows),
+    max_speed, max_displacement_total, _horizontal and _vertical, toe (largest x of a point in the
+    end), final_kinetic_energy (J/m), simulated_time (of the slide), wall_seconds (spent stepping)
+    and point_steps_per_second. What the run has not reached, or not recorded, is None.
     """
     return {
         "points": len(hdf5.read_points(run.path).get("mass", ())),
@@ -55,6 +58,11 @@ def summarise(run: Run) -> dict[str, float | int | None]:
         **_displacement_summary(run),
         **_speed_of_computing(run.attributes.get("timing")),
     }
+
+
+def still_grows(summary: Mapping[str, float | int | None]) -> bool:
+    """Whether the kinetic energy was largest in the end, so that it may have its peak to come."""
+    return summary["peak_kinetic_energy"] is not None and summary["time_of_peak"] is None
 
 
 def _steps(column: npt.NDArray[np.int64]) -> int:
@@ -79,10 +87,11 @@ def _energy_summary(energy: Energy) -> dict[str, float | None]:
     )
     if len(energy) == 0:
         return dict.fromkeys(names)
+    peak = phases_of(energy).peak
     values = (
         energy.peak.value,
-        energy.peak.time,
-        energy.speed_at_peak,
+        peak,
+        None if peak is None else energy.speed_at_peak,
         float(energy.max_speed.max()),
         float(energy.kinetic[-1]),
         float(energy.time[-1]),
@@ -107,7 +116,8 @@ def _speed_of_computing(timing: dict[str, Any] | None) -> dict[str, float | None
 
 def readable(summary: dict[str, float | int | None]) -> dict[str, str]:
     """The values as text, with their units."""
+    absent = dict.fromkeys(_AT_PEAK, "still growing") if still_grows(summary) else {}
     return {
-        name: "not recorded" if value is None else _READABLE[name].format(value)
+        name: absent.get(name, "not recorded") if value is None else _READABLE[name].format(value)
         for name, value in summary.items()
     }

@@ -220,6 +220,14 @@ def test_scene_file_and_its_repetition(
     np.testing.assert_array_equal(again.final.position, first.final.position)
 
 
+def test_endings_in_capitals(undrawn: list[Any]) -> None:
+    Path("BOULDER.TOML").write_text(SCENE)
+    assert cli.main(["run", "BOULDER.TOML", "--quiet", "--output", "FIRST.H5"]) == 0
+    assert gs.load("FIRST.H5") == gs.load("BOULDER.TOML")
+    assert cli.main(["run", "FIRST.H5", "--quiet"]) == 0
+    assert gs.open("FIRST_again.h5").status == "finished"
+
+
 def test_a_repetition_that_differs_says_so(
     undrawn: list[Any], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -245,7 +253,11 @@ def test_a_repetition_that_differs_says_so(
         ("run round --seed -1", "seed must be a whole number >= 0, got -1"),
         ("run round --stone-modulus 0", "young must be"),
         ("run made.h5 --output made.h5 --overwrite", "not the run to repeat"),
+        ("run soil --output soil.txt", "--output must be a file that ends in .h5, got 'soil.txt'"),
+        ("run cut.h5", "path must name a whole run file, got 'cut.h5', which is damaged"),
         ("export missing.h5 --vtu out", "missing.h5"),
+        ("export empty.h5 --vtu out", "the run must have snapshots, got none in 'empty.h5'"),
+        ("export made.h5 --vtu boulder.toml", "--vtu must be a directory, got 'boulder.toml'"),
     ],
 )
 def test_what_run_and_export_refuse(
@@ -253,6 +265,8 @@ def test_what_run_and_export_refuse(
 ) -> None:
     Path("boulder.toml").write_text(SCENE)
     synthetic_run.write_run(Path("made.h5"), until=0.5)
+    synthetic_run.new_writer(Path("empty.h5"))
+    Path("cut.h5").write_bytes(Path("made.h5").read_bytes()[:50_000])
     before = sorted(Path().iterdir())
     assert cli.main(words.split()) == 2
     assert message in capsys.readouterr().err
@@ -268,8 +282,12 @@ def test_export(capsys: pytest.CaptureFixture[str]) -> None:
         "made_0000.vtu",
         "made_0001.vtu",
     }
-    assert cli.main(["export", "made.h5", "--vtu", "out"]) == 1
-    assert "out" in capsys.readouterr().err
+    again = ["export", "made.h5", "--vtu", "out"]
+    assert cli.main(again) == 2
+    refusal = "--vtu must be an empty directory unless --overwrite is given, got 'out'"
+    assert refusal in capsys.readouterr().err
+    assert cli.main([*again, "--overwrite"]) == 0
+    assert len(list(Path("out").iterdir())) == 4
 
 
 def test_info(capsys: pytest.CaptureFixture[str]) -> None:

@@ -130,6 +130,22 @@ def test_displacement_bars_stand_beside_the_paper(run: Run, ax: Axes) -> None:
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["soil", "the paper"]
 
 
+@pytest.mark.parametrize(
+    ("paper", "beside"),
+    [({"time_of_peak": 1.5}, [0, 0, 0]), ({"max_displacement_total": 8.7}, [1, 0, 0])],
+)
+def test_bars_are_about_their_names_and_in_the_legend_if_drawn(
+    run: Run, ax: Axes, paper: dict[str, float], beside: list[int]
+) -> None:
+    figures.displacement_bars({"B": run}, paper, ax)
+    for tick, others in enumerate(beside):
+        sides = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in ax.patches]
+        about = [side for side in sides if abs(np.mean(side) - tick) < 0.5]
+        assert len(about) == 1 + others and np.mean(about) == pytest.approx(tick)
+    names = [text.get_text() for text in ax.get_legend().get_texts()]
+    assert names == (["B", "the paper"] if any(beside) else ["B"])
+
+
 def test_panels_share_their_scales(run: Run) -> None:
     figure = moments(run, SPEED, figures.SPEED_TIMES)
     panels = figure.axes[:3]

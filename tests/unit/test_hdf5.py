@@ -176,6 +176,22 @@ def test_other_files_are_refused(tmp_path: Path) -> None:
         hdf5.read_attributes(tmp_path / "other.h5")
 
 
+def test_a_damaged_file_is_named(path: Path, tmp_path: Path) -> None:
+    whole, cut = path.read_bytes(), tmp_path / "cut.h5"
+    cut.write_bytes(whole[: len(whole) // 2])
+    with pytest.raises(ValueError, match=r"path must name a whole run file, .*cut\.h5.* damaged: "):
+        hdf5.read_attributes(cut)
+
+
+def test_errors_of_the_system_are_no_damage(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(*_: object) -> None:
+        raise PermissionError(13, "not for you")
+
+    monkeypatch.setattr(h5py, "File", refused)
+    with pytest.raises(PermissionError):
+        hdf5.read_attributes(path)
+
+
 def test_a_failed_change_leaves_the_file_as_it_was(tmp_path: Path) -> None:
     writer = synthetic.new_writer(tmp_path / "a.h5")
     before = writer.path.read_bytes()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import signal
 import subprocess
 import sys
@@ -11,11 +12,12 @@ import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import gimpslope as gs
 from gimpslope import cli
-from gimpslope.io import hdf5
+from gimpslope.io import atomic, hdf5
 from gimpslope.studies import parallel, planned, reference, reproduce
 
 SMALL = [
@@ -47,6 +49,12 @@ def test_figures_and_page(folder: Path) -> None:
     page = (folder / "summary.md").read_text()
     for word in ("9.3", "8.7", "seeds of the stones | 1", "3e+07 Pa", "0.2 m", gs.__version__):
         assert word in page
+    for library in (f"Python {platform.python_version()}", f"NumPy {np.__version__}", "h5py 3"):
+        assert library in page
+    first = page.partition("## Claims of the paper\n\n")[2].splitlines()[0]
+    assert first.startswith("Of 24 claims, by verdict: `identified`: not reached ")
+    counted = [int(word) for word in first.replace(",", " ").rstrip(".").split() if word.isdigit()]
+    assert sum(counted) == 2 * 24
     assert "not reached" in page and "figure_8.png" in page
     assert page.count("| kinetic energy |") == 6
     html = (folder / "summary.html").read_text()
@@ -62,7 +70,7 @@ def test_finished_runs_are_kept_and_stopped_ones_made_anew(folder: Path, tmp_pat
     made = [run.stat().st_mtime_ns for run in runs]
     stopped = folder / "identified_oval_1.h5"
     stopped.write_bytes(stopped.read_bytes())
-    with gs.io.atomic.change(stopped) as file:
+    with atomic.change(stopped) as file:
         file.attrs["status"] = "interrupted"
     assert cli.main([*SMALL, "--output", str(folder)]) == 0
     changed = [
@@ -85,7 +93,9 @@ def test_other_runs_are_not_replaced(folder: Path, capsys: pytest.CaptureFixture
         ("--seed -3", "seed must be a whole number >= 0, got -3"),
         ("--stone-modulus -1", "young"),
         ("--cell 0", "cell must be"),
-        ("--cell 0.2 --time-step 3e-4", "time_step"),
+        ("--cell 0.2 --time-step 3e-4", "slope arbitrary, cell 0.2 m: time_step"),
+        ("--cell 0.4", "slope arbitrary, cell 0.4 m: cell must be small enough for a point in"),
+        ("--convergence arbitrary --cells 0.4 0.2 0.1", "slope arbitrary, cell 0.4 m: cell must"),
     ],
 )
 def test_refusals(words: str, message: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -175,9 +185,33 @@ def test_files_that_are_no_runs(content: bytes, tmp_path: Path) -> None:
     path, setup = tmp_path / "run.h5", reference.setup(cell=0.8)
     path.write_bytes(content)
     if content:
-        with pytest.raises(FileExistsError, match="holds something else"):
+        with pytest.raises(FileExistsError, match="holds something else: path must name a"):
             planned.plan(path, setup)
     assert planned.plan(path, setup, overwrite=True).found is None
+
+
+def test_what_differs_from_a_run_that_is_there(tmp_path: Path) -> None:
+    path = tmp_path / "run.h5"
+    setup = reference.setup("round", cell=0.4, duration=0.01)
+    setup.simulate(path, progress=False)
+
+    def difference(**changed: Any) -> str:
+        other = reference.setup("round", **({"cell": 0.4, "duration": 0.01} | changed))
+        with pytest.raises(FileExistsError) as refusal:
+            planned.plan(path, other)
+        return str(refusal.value).partition("something else: ")[2]
+
+    assert difference(duration=0.8) == "stages.slide.duration 0.01 there, 0.8 here"
+    assert difference(stone_model="rigid") == "scene.stone DruckerPrager there, Rigid here"
+    assert difference(time_step=1e-5) == "method.time_step None there, 1e-05 here"
+    drawn = difference(seed=2)
+    assert drawn.startswith("scene.stones.stones[0].shape.centre[0] 0.474546 there, ")
+    assert drawn.count(" there") == 3 and drawn.endswith(" more")
+    assert planned.plan(path, reference.setup("round", cell=0.4, duration=0.01, threads=2)).found
+    with atomic.change(path) as file:
+        file.attrs["gimpslope_version"] = "0.0.1"
+    with pytest.raises(FileExistsError, match=r"else: another version, 0\.0\.1 there, .* here$"):
+        planned.plan(path, setup)
 
 
 def test_a_run_that_fails_is_named_and_the_others_are_finished(tmp_path: Path) -> None:

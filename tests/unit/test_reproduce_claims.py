@@ -56,6 +56,8 @@ def told(name: str) -> Measures:
     )
 
 
+METRES = judging.Form(2, "m")
+
 BANDS = (
     "In slopes with stones several plastic bands interlace (here: at 1 s they enclose more islands "
     "than in the soil slope)."
@@ -118,8 +120,8 @@ def test_chance_decides_between_slopes_with_stones(oval: float, found: str) -> N
 
 def test_chance_counts_against_numbers_too() -> None:
     """8.7 m within 0.2 m; three deviations of 1 % are 0.26 m."""
-    part = judging.near("total", "{:.2f} m", 8.7, 0.2, ("arbitrary",))
-    soil = judging.near("total", "{:.2f} m", 8.7, 0.2, ("soil",))
+    part = judging.near("total", METRES, 8.7, 0.2, ("arbitrary",))
+    soil = judging.near("total", METRES, 8.7, 0.2, ("soil",))
     for total, found in (
         (8.7, "one draw cannot tell"),
         (8.45, "one draw cannot tell"),
@@ -128,7 +130,7 @@ def test_chance_counts_against_numbers_too() -> None:
         runs = PAPER | {name: [replace(told(name), total=total)] for name in ("arbitrary", "soil")}
         assert verdict(part, runs) == found
         assert verdict(soil, runs) == ("holds" if total == 8.7 else "does not")
-    twice = judging.ratio("peak_energy", "{:g}", "soil", "arbitrary", 2.5, 0.15)
+    twice = judging.ratio("peak_energy", judging.Form(0), "soil", "arbitrary", 2.5, 0.15)
     for energy, found in ((64.0, "holds"), (56.0, "one draw cannot tell"), (50.0, "does not")):
         runs = PAPER | {"arbitrary": [replace(told("arbitrary"), peak_energy=energy)]}
         assert verdict(twice, runs) == found
@@ -147,13 +149,13 @@ def test_five_draws_have_a_spread_of_their_own_and_fewer_do_not() -> None:
     assert found.deviation == pytest.approx((62.5 / 5) ** 0.5)
     assert sample.spread_of([draws(name, 4) for name in judging.STONES])["peak_energy"] == 0.01
     runs = PAPER | {name: draws(name, 5) for name in judging.STONES}
-    peak = judging.ordered("peak_energy", "{:g}", *judging.STONES)
+    peak = judging.ordered("peak_energy", judging.Form(0), *judging.STONES)
     assert verdict(peak, runs) == "5 draws cannot tell"
 
 
 def test_a_figure_of_unknown_spread_decides_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sample, "KNOWN", {"spread": {}, "from": ""})
-    peak = judging.ordered("peak_energy", "{:g}", *judging.STONES)
+    peak = judging.ordered("peak_energy", judging.Form(0), *judging.STONES)
     assert verdict(peak, PAPER) == "one draw cannot tell"
 
 
@@ -175,8 +177,36 @@ def test_what_was_not_reached_is_not_judged() -> None:
 def test_figures_stand_beside_the_verdict() -> None:
     (_, judgement), *_ = claims.judge(PAPER, chance(PAPER))
     assert judgement.figures == (
-        "soil 4.00 s, arbitrary 3.80 s ± 1%, round 4.10 s ± 1%, oval 4.00 s ± 1%"
+        "soil 4.00 s, arbitrary 3.80 ± 0.04 s, round 4.10 ± 0.04 s, oval 4.00 ± 0.04 s"
     )
+
+
+@pytest.mark.parametrize(
+    ("form", "mean", "deviation", "shown"),
+    [
+        (judging.Form(1, "kJ/m"), 38.13, 2.67, "38.1 ± 2.7 kJ/m"),
+        (judging.Form(1, "%", 100.0), 0.2718, 0.0142, "27.2 ± 1.4 %"),
+        (judging.Form(1, "%", 100.0), 0.0001, 0.00008, "0.0 %"),
+        (judging.Form(1, "t/m"), 112.3, 0.04, "112.3 t/m"),
+        (judging.Form(0), 34.2, 1.4, "34 ± 1"),
+        (judging.Form(2, "m"), 9.3, float("nan"), "9.30 m"),
+        (judging.Form(2, "m"), float("nan"), float("nan"), "not reached"),
+    ],
+)
+def test_deviations_are_in_the_unit_of_the_figure(
+    form: judging.Form, mean: float, deviation: float, shown: str
+) -> None:
+    assert form.shown(sample.Sample(mean, 1, deviation)) == shown
+
+
+def test_a_ratio_of_what_was_not_reached_is_left_out() -> None:
+    twice = judging.ratio("peak_energy", judging.Form(1, "kJ/m"), "soil", "arbitrary", 2.5, 0.15)
+    nothing = {"soil": [replace(told("soil"), peak_energy=float("nan"))]}
+    assert judging.judgement([twice], PAPER | nothing, chance(PAPER)) == (
+        "not reached",
+        "soil not reached, arbitrary 64.0 ± 0.6 kJ/m",
+    )
+    assert judging.judgement([twice], PAPER, chance(PAPER)).figures.endswith(" kJ/m: 2.50")
 
 
 def test_spread_is_the_deviation_between_draws() -> None:

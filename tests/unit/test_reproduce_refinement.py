@@ -10,10 +10,11 @@ from pathlib import Path
 import pytest
 from matplotlib.colors import to_hex
 
+import gimpslope as gs
 from gimpslope import cli
 from gimpslope.figures.grids import against_cell
 from gimpslope.studies import reproduce
-from gimpslope.studies.reproduce import claims, judging, refinement
+from gimpslope.studies.reproduce import claims, judging, refinement, tables
 from gimpslope.studies.reproduce.measures import FIGURES, Measures
 
 SPREAD = dict.fromkeys(FIGURES, 0.01)
@@ -35,7 +36,8 @@ def refined(rounds: Sequence[float], soil: float = 160.0) -> refinement.Refineme
         }
         for cell, peak in zip(CELLS, rounds, strict=True)
     }
-    return refinement.refinement(grids, SPREAD)
+    gaps = {"round": [(0.5, 0.25), (1.0, 0.5), (2.0, 1.0)]}
+    return refinement.refinement(grids, gaps, SPREAD)
 
 
 def survival(found: refinement.Refinement, text: str) -> refinement.Survival:
@@ -73,13 +75,13 @@ def test_claims_about_other_slopes_are_not_judged() -> None:
 
 
 def test_one_slope_is_alike_to_nothing() -> None:
-    alike = judging.alike("rest_time", "{:g}", 0.15, judging.SLOPES)
+    alike = judging.alike("rest_time", judging.Form(0), 0.15, judging.SLOPES)
     assert judging.judgement([alike], {"soil": [measures()]}, SPREAD).verdict == "not run"
 
 
 def test_order_skips_slopes_that_were_not_run() -> None:
     """Soil before round, though arbitrary ones stand between them."""
-    order = judging.ordered("peak_energy", "{:g}", *judging.SLOPES)
+    order = judging.ordered("peak_energy", judging.Form(0), *judging.SLOPES)
     draws = {"soil": [measures(peak_energy=2.0)], "round": [measures(peak_energy=1.0)]}
     assert judging.judgement([order], draws, SPREAD).verdict == "holds"
     swapped = {"soil": draws["round"], "round": draws["soil"]}
@@ -106,8 +108,42 @@ def test_the_picture_shows_draws_means_and_the_paper() -> None:
     figure = refinement.figure(refined((100.0, 130.0, 145.0)))
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.texts] == [
-        *("A soil", "C round", "A soil, the paper", "C round, the paper")
+        *("A soil", "C round", "A soil, the paper", "C round, the paper"),
+        "A soil, the paper (more than)",
     ]
+
+
+def test_a_slope_without_figures_is_in_no_legend() -> None:
+    nothing = [[float("nan")]] * 3
+    ax = against_cell(CELLS, {"A soil": nothing, "C round": [[1], [2], [3]]})
+    assert ax.get_legend_handles_labels()[1] == ["C round"]
+    assert to_hex(ax.lines[0].get_color()) == to_hex("C1")
+
+
+def test_a_lower_bound_is_drawn_as_one() -> None:
+    figure = refinement.figure(refined((100.0, 130.0, 145.0)))
+    (bound,) = [
+        line
+        for ax in figure.axes
+        for line in ax.lines
+        if line.get_label() == "A soil, the paper (more than)"
+    ]
+    assert bound.axes.get_title() == "fastest point at the peak, m/s"
+    assert set(bound.get_ydata()) == {3.0} and bound.get_linestyle() == ":"
+
+
+def test_the_table_has_gaps_and_no_limits_of_counts() -> None:
+    bands = dict(zip(CELLS, (0.0, 0.0, 1.0), strict=True))
+    grids = {cell: {"round": [measures(peak_bands=count)]} for cell, count in bands.items()}
+    found = refinement.refinement(grids, {"round": [(0.5, 0.25), (1.0, 0.5), (2.0, 1.0)]}, SPREAD)
+    rows = [line.strip("| ").split(" | ") for line in tables.grids(found).splitlines()]
+    by_figure = {figure: cells for _, figure, *cells in rows}
+    assert found.limit("round", "peak_bands").behaviour == "diverges"
+    assert by_figure["plastic bands at the peak"] == ["-", "0", "0", "1", "-"]
+    assert by_figure["smallest gap between stones of each draw, cells"] == [
+        *("-", "0.50, 0.25", "1.00, 0.50", "2.00, 1.00", "-")
+    ]
+    assert "smallest gap" not in tables.grids(replace(found, gaps={}))
 
 
 def test_runs_on_the_grid_of_the_study_are_shared(tmp_path: Path) -> None:
@@ -151,6 +187,11 @@ def test_page_figures_and_resumption(tmp_path: Path) -> None:
     assert "](identified/figure_grids.png)" in page
     assert (tmp_path / "grids" / "identified" / "figure_grids.png").stat().st_size > 10_000
     measured = json.loads((tmp_path / "grids" / "figures.json").read_text())
+    gaps = [
+        f"{gs.open(path).summary['smallest_gap_in_cells']:.2f}"
+        for path in sorted((tmp_path / "grids").glob("*round_[12].h5"))
+    ]
+    assert "of each draw, cells | - | " in page and f" | {', '.join(gaps)} | - |" in page
     on_grids = measured["grids"]["identified"]
     assert [len(on_grids[cell]["round"]) for cell in ("0.8", "0.4", "0.2")] == [2, 2, 2]
     assert on_grids["0.2"]["soil"] == [measured["identified"]["identified_soil"]]

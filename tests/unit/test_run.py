@@ -14,6 +14,7 @@ from gimpslope.analysis import first_outlines
 from gimpslope.method import Method
 from gimpslope.run import Run, open
 from gimpslope.stages import Stages
+from gimpslope.studies import comparison, reference
 from gimpslope.summary import summarise
 
 REACH = synthetic.travel(synthetic.END) * synthetic.SHARE.max()
@@ -221,6 +222,41 @@ def test_a_killed_run_is_summarised_from_its_last_snapshot(tmp_path: Path) -> No
     moved = synthetic.displacement(1.0)
     assert summary["max_displacement_vertical"] == pytest.approx(np.abs(moved[:, 1]).max())
     assert summary["wall_seconds"] is None
+
+
+def test_a_peak_that_may_be_to_come_is_none(tmp_path: Path) -> None:
+    run = synthetic.write_run(tmp_path / "run.h5", until=1.0)
+    summary = run.summary
+    assert run.phases().peak is None
+    assert summary["time_of_peak"] is None and summary["speed_at_peak"] is None
+    assert summary["peak_kinetic_energy"] == pytest.approx(synthetic.kinetic(1.0))
+    assert run.attributes["summary"] == summary
+    assert run._repr_html_().count("<td>still growing</td>") == 2
+    shown = comparison.text("early", summary, {"time_of_peak": 1.6, "speed_at_peak": 3.0})
+    _, *of_peak, total = shown.splitlines()[:5]
+    assert [line.split()[-3:] for line in of_peak] == [
+        [paper, "still", "growing"] for paper in ("1.6", "-", "3")
+    ]
+    assert "still" not in total
+    for line in comparison.text("whole", run.summary, {}).splitlines()[1:4]:
+        assert "still growing" in line
+
+
+@pytest.mark.parametrize(
+    ("gap", "told"),
+    [
+        (1.031, "The nearest two stones are 1.03 cells apart; closer than two cells stones share"),
+        (7.28, "The nearest two stones are 7.28 cells apart.\n"),
+    ],
+)
+def test_stones_that_share_nodes_are_told(run: Run, gap: float, told: str) -> None:
+    assert told in comparison.text("stones", run.summary | {"smallest_gap_in_cells": gap}, {})
+    assert "stones are" not in comparison.text("one stone", run.summary, {})
+
+
+def test_the_papers_lower_bound_is_told_as_one() -> None:
+    assert reference.published("speed_at_peak", 3.0) == "> 3"
+    assert reference.published("time_of_peak", 1.6) == "1.6"
 
 
 def test_a_run_killed_before_the_slide(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import re
 from dataclasses import FrozenInstanceError, fields, replace
 
 import numpy as np
@@ -166,12 +167,30 @@ INSIDE = box(0.2, 0.2, 0.4, 0.4)
             r"^stones\[0\] must not overlap stones\[2\], got 1 pairs that overlap: \[\[0, 2\]\]",
         ),
         ([INSIDE, INSIDE], STONE, ValueError, r"overlap stones\[1\]"),
-        ([box(0.51, 0.51, 0.01, 0.01)], STONE, ValueError, r"^stones\[0\] must hold a point"),
+        (
+            [INSIDE, box(1.51, 0.51, 0.01, 0.01)],
+            STONE,
+            ValueError,
+            r"^cell must be small .* a point in stones\[1\], got 0\.1 m with a stone of 0\.0001",
+        ),
     ],
 )
 def test_refusal_of_stones(stones, stone, error, text):
     with pytest.raises(error, match=text):
         Scene(BLOCK, SOIL, stones=stones, stone=stone)
+
+
+@pytest.mark.parametrize("points_per_cell", [1, 9])
+def test_the_cell_that_is_said_to_do_does(points_per_cell):
+    """Wherever the stones lie, of which the thinner one sets it."""
+    given = {"soil": SOIL, "stone": STONE, "points_per_cell": points_per_cell}
+    for place in np.linspace(0.2, 0.3, 23):
+        thin, wide = Ellipse((place, place), (0.3, 0.06), angle=40), box(1, 0.2, 0.1, 0.1)
+        with pytest.raises(ValueError, match="is sure to do for every stone") as refusal:
+            Scene(BLOCK, stones=[thin, wide], cell=2.0, **given)
+        cell = float(re.search(r"; ([\d.]+) m or less", str(refusal.value)).group(1))
+        assert 0.9 * math.sqrt(2 * points_per_cell) * 0.03 < cell
+        assert Scene(BLOCK, stones=[thin, wide], cell=cell, **given).n_points
 
 
 def test_stones_may_touch_each_other_and_the_outline():

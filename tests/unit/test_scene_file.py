@@ -49,9 +49,9 @@ SOIL_OF_FILE = gs.DruckerPrager(density=1800, young=30e6, poisson=0.33, friction
 ROCK = gs.Elastic(density=2600, young=20e9, poisson=0.2)
 
 
-def setup_of(folder: Path, text: str) -> gs.Setup:
+def setup_of(folder: Path, text: str, cell: str = "cell = 0.1") -> gs.Setup:
     path = folder / "scene.toml"
-    path.write_text(text)
+    path.write_text(f"{cell}\n{text}")
     return scene_file.read(path)
 
 
@@ -61,7 +61,6 @@ def test_the_shortest_scene_has_the_defaults(tmp_path: Path) -> None:
 
 def test_every_table(tmp_path: Path) -> None:
     text = f"""
-    cell = 0.2
     points_per_cell = 9
     gravity = 9.8
     {SLOPE}
@@ -108,7 +107,7 @@ def test_every_table(tmp_path: Path) -> None:
         gs.Stages(gs.Gravity(0.3), gs.Settling(damping="local"), gs.Slide(4.0)),
         gs.Recording(energy_interval=0.01, snapshot_times=(0.5, 1.6)),
     )
-    assert setup_of(tmp_path, text) == expected
+    assert setup_of(tmp_path, text, "cell = 0.2") == expected
 
 
 def test_stones_are_drawn_as_the_function_draws_them(tmp_path: Path) -> None:
@@ -192,7 +191,18 @@ def test_mesh_beside_the_file(tmp_path: Path) -> None:
         (SLOPE + SOIL + GRANITE, r"materials must be .* got \['granite'\] besides"),
         (SLOPE + SOIL + STONES, r"\[stones\[0\]\] material must be one of 'soil', got 'granite'"),
         (SLOPE + SOIL + STONE + STONES.replace('"granite"', '"stone"') + "colour = 1", "'colour'"),
-        (SLOPE + SOIL + "[walls]\nleft = 'glued'", r"\[walls\] left must be one of 'fixed'"),
+        (
+            SLOPE + SOIL + "[walls]\nleft = 'glued'",
+            r"\[walls\] left must be one of 'fixed', 'roller', 'free' or { coulomb = \.\.\. }, got",
+        ),
+        (
+            SLOPE + SOIL + STONE + STONES.replace('"granite"', '"stone"') + "centre = [1, 1]",
+            r"\[stones\[1\]\] a stone must have either vertices or centre, axes, angle, got",
+        ),
+        (
+            SLOPE + "vertices = [[0, 0], [1, 0], [0, 1]]" + SOIL,
+            r"\[outline\] outline must have either vertices or height, crest, angle, got height",
+        ),
         (SLOPE + SOIL + "[walls]\nbottom = { mu = 1 }", "bottom has no 'mu'; its keys are coulomb"),
         (SLOPE + SOIL + "[walls]\nbottom = {}", "bottom needs 'coulomb'"),
         (SLOPE + SOIL + "[stages.melting]\nramp = 1", "a stage must be one of 'gravity'"),
@@ -220,7 +230,6 @@ def test_mesh_beside_the_file(tmp_path: Path) -> None:
             "stones must fit into the outline, got places for",
         ),
         (SLOPE + SOIL + "cell", "must be TOML"),
-        ("cell = 'wide'\n" + SLOPE + SOIL, "cell must be .* got 'wide'"),
         ("stones = 3\n" + SLOPE + SOIL, r"stones must be a list of tables"),
         ("method = 3\n" + SLOPE + SOIL, r"\[method\] must be a table, got 3"),
     ],
@@ -233,6 +242,15 @@ def test_refusals_name_the_file_the_table_and_the_key(
     assert "scene.toml" in str(refusal.value)
 
 
+@pytest.mark.parametrize(
+    ("cell", "message"),
+    [("", "the scene file needs 'cell', which is missing"), ("cell = 'wide'", "got 'wide'")],
+)
+def test_the_cell_must_be_said(cell: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises((ValueError, TypeError), match=rf"scene\.toml: .*{message}"):
+        setup_of(tmp_path, SLOPE + SOIL, cell)
+
+
 def test_the_material_of_the_rest_may_be_named_too(tmp_path: Path) -> None:
     named = STONES.replace('"granite"', '"stone"')
     assert setup_of(tmp_path, SLOPE + SOIL + STONE + named).scene.stone == ROCK
@@ -241,8 +259,8 @@ def test_the_material_of_the_rest_may_be_named_too(tmp_path: Path) -> None:
 
 
 def test_a_run_gives_its_setup_back(tmp_path: Path) -> None:
-    text = "cell = 0.8\n" + SLOPE + SOIL + "[stages.slide]\nduration = 0.05"
-    setup = setup_of(tmp_path, text)
+    text = SLOPE + SOIL + "[stages.slide]\nduration = 0.05"
+    setup = setup_of(tmp_path, text, "cell = 0.8")
     run = setup.simulate(tmp_path / "a.h5", progress=False)
     assert run.setup == setup
     assert gs.load(tmp_path / "a.h5") == gs.load(tmp_path / "scene.toml") == setup

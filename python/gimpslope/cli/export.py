@@ -8,6 +8,7 @@ from collections.abc import Callable
 from ..io import vtk
 from ..run import Run
 from .commands import Commands
+from .paths import make_empty_directory
 
 
 def add(commands: Commands) -> None:
@@ -26,8 +27,10 @@ def add(commands: Commands) -> None:
 
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
     run = Run(options.run)
+    run.snapshots()
     for time in options.times or ():
         run.snapshot(time)
+    make_empty_directory("--vtu", options.vtu, overwrite=options.overwrite)
 
     def command() -> int:
         path = vtk.write_vtu_series(

@@ -18,7 +18,7 @@ from ..simulation import Simulation
 from ..studies import comparison, reference
 from .commands import Commands
 from .options import add_stone_model
-from .paths import check_file
+from .paths import check_file, has_ending
 
 _OF_SLOPES: dict[str, Any] = {
     "reading": "identified",
@@ -67,7 +67,9 @@ def add(commands: Commands) -> None:
         help="cell_average keeps soil from locking (default: point, as in the paper)",
     )
     parser.add_argument("--threads", type=int, metavar="N", help="(default: 1)")
-    parser.add_argument("--output", metavar="FILE", help="(default: the slope's name and .h5)")
+    parser.add_argument(
+        "--output", metavar="FILE", help="ends in .h5 (default: the slope's name and .h5)"
+    )
     parser.add_argument("--overwrite", action="store_true", help="replace an output that exists")
     parser.add_argument("--summary", metavar="FILE", help="write the summary as JSON")
     parser.add_argument("--figures", metavar="DIR", help="(default: the output's name + _figures)")
@@ -75,12 +77,12 @@ def add(commands: Commands) -> None:
 
 
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
-    repeated = Run(options.slope) if options.slope.endswith(".h5") else None
+    repeated = Run(options.slope) if has_ending(options.slope, ".h5") else None
     setup = _setup(options, repeated)
     if options.threads is not None:
         setup = replace(setup, method=replace(setup.method, threads=options.threads))
     output = options.output or _default_output(options.slope, repeated)
-    check_file("--output", output)
+    check_file("--output", output, ".h5")
     figure_directory = options.figures or f"{Path(output).with_suffix('')}_figures"
     _check_targets(options, output, figure_directory, repeated)
     simulation = Simulation(setup)
@@ -117,7 +119,7 @@ def _setup(options: argparse.Namespace, repeated: Run | None) -> Setup:
         )
     if repeated is not None:
         return repeated.setup
-    if not options.slope.endswith(".toml"):
+    if not has_ending(options.slope, ".toml"):
         raise ValueError(
             f"SLOPE must be one of {', '.join(reference.SLOPES)}, a scene file that ends in .toml, "
             f"or a run file that ends in .h5, got {options.slope!r}"

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
@@ -27,20 +26,25 @@ def displacement_bars(
     """Bars of the largest displacement in the end (m): total, horizontal and vertical.
 
     `runs` are named as in the legend; `reference` holds values of the paper by the keys of a run's
-    summary: max_displacement_total, max_displacement_horizontal and max_displacement_vertical.
+    summary: max_displacement_total, max_displacement_horizontal and max_displacement_vertical, as
+    many as the paper has.
     """
     ax = ax or new_axes()
-    bars: list[tuple[str, str, Sequence[float]]] = [
-        (name, f"C{number}", tuple(run.max_displacement()))
+    series = [
+        (name, f"C{number}", run.max_displacement()._asdict())
         for number, (name, run) in enumerate(runs.items())
     ]
-    if reference:
-        paper = [reference.get(key, np.nan) for key in _SUMMARY_KEYS.values()]
-        bars.append(("the paper", PAPER_COLOUR, paper))
-    width = _WIDTH / len(bars)
-    for number, (name, colour, heights) in enumerate(bars):
-        places = np.arange(len(_SUMMARY_KEYS)) + (number - (len(bars) - 1) / 2) * width
-        drawn = ax.bar(places, heights, 0.92 * width, color=colour, label=name)
+    paper = _of_paper(reference or {})
+    if paper:
+        series.append(("the paper", PAPER_COLOUR, paper))
+    width = _WIDTH / len(series)
+    for number, (name, colour, heights) in enumerate(series):
+        places = [
+            tick + (number - (len(runs) + (part in paper) - 1) / 2) * width
+            for tick, part in enumerate(_SUMMARY_KEYS)
+            if part in heights
+        ]
+        drawn = ax.bar(places, list(heights.values()), 0.92 * width, color=colour, label=name)
         ax.bar_label(drawn, fmt="%.2f", padding=2, fontsize="small")
     ax.set_xticks(range(len(_SUMMARY_KEYS)), list(_SUMMARY_KEYS))
     ax.set_ylabel("largest displacement (m)")
@@ -88,12 +92,17 @@ def displacement_bars_by_run(
 
 
 def _group(run: Run, paper: Mapping[str, float]) -> list[_Bar]:
-    bars = []
+    bars, published = [], _of_paper(paper)
     for name, height in run.max_displacement()._asdict().items():
         bars.append(_Bar(name, height, paper=False))
-        if _SUMMARY_KEYS[name] in paper:
-            bars.append(_Bar(name, paper[_SUMMARY_KEYS[name]], paper=True))
+        if name in published:
+            bars.append(_Bar(name, published[name], paper=True))
     return bars
+
+
+def _of_paper(paper: Mapping[str, float]) -> dict[str, float]:
+    """The parts of the displacement that the paper has, by their names."""
+    return {name: paper[key] for name, key in _SUMMARY_KEYS.items() if key in paper}
 
 
 def _paper_style(colour: str) -> dict[str, Any]:

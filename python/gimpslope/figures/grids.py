@@ -17,24 +17,29 @@ def against_cell(
     ax: Axes | None = None,
     *,
     reference: Mapping[str, float] | None = None,
+    bounds: Mapping[str, float] | None = None,
 ) -> Axes:
     """A result against the side of the cell (m): the mean over draws as a line, each draw a point.
 
     Parameters
     ----------
     cells : m, shape (n,)
-    values : by the name of the slope, shape (n, draws)
+    values : by the name of the slope, shape (n, draws); without any that is finite it is left out
     ax : to draw on; None: a new one
     reference : published values by the name of the slope, drawn across
+    bounds : published lower bounds by the name of the slope, dotted across
     """
     ax = ax or new_axes()
+    across = (("--", "the paper", reference or {}), (":", "the paper (more than)", bounds or {}))
     for number, (name, draws) in enumerate(values.items()):
         found, colour = np.asarray(draws, dtype=float), f"C{number}"
-        ax.plot(cells, found.mean(axis=1), "-", color=colour, linewidth=1.8, label=name)
-        ax.plot(cells, found, "o", color=colour, markersize=4.5, alpha=0.7)
-        if reference and name in reference:
-            label = f"{name}, the paper"
-            ax.axhline(reference[name], color=colour, linestyle="--", linewidth=1.2, label=label)
+        if np.isfinite(found).any():
+            ax.plot(cells, found.mean(axis=1), "-", color=colour, linewidth=1.8, label=name)
+            ax.plot(cells, found, "o", color=colour, markersize=4.5, alpha=0.7)
+        for style, whose, published in across:
+            if name in published:
+                label = f"{name}, {whose}"
+                ax.axhline(published[name], color=colour, ls=style, linewidth=1.2, label=label)
     ax.set_xlabel("cell (m)")
     ax.set_xlim(0.0, 1.08 * max(cells))
     ax.set_ylim(bottom=0.0)

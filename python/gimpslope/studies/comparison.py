@@ -7,37 +7,39 @@ from collections.abc import Mapping
 import h5py
 
 from ..run import Run
+from ..summary import still_grows
+from . import reference
 
 _ROWS = (
-    ("time of peak kinetic energy", "time_of_peak", "s", "{:g}"),
-    ("peak kinetic energy", "peak_kinetic_energy", "kJ/m", ""),
-    ("fastest point at the peak", "speed_at_peak", "m/s", "> {:g}"),
-    ("largest displacement", "max_displacement_total", "m", "{:g}"),
-    ("  horizontal", "max_displacement_horizontal", "m", "{:g}"),
-    ("  vertical", "max_displacement_vertical", "m", "{:g}"),
-    ("toe", "toe", "m", ""),
-    ("final kinetic energy", "final_kinetic_energy", "J/m", ""),
+    ("time of peak kinetic energy", "time_of_peak", "s"),
+    ("peak kinetic energy", "peak_kinetic_energy", "kJ/m"),
+    ("fastest point at the peak", "speed_at_peak", "m/s"),
+    ("largest displacement", "max_displacement_total", "m"),
+    ("  horizontal", "max_displacement_horizontal", "m"),
+    ("  vertical", "max_displacement_vertical", "m"),
+    ("toe", "toe", "m"),
+    ("final kinetic energy", "final_kinetic_energy", "J/m"),
 )
+_OF_PEAK = {"time_of_peak", "peak_kinetic_energy", "speed_at_peak"}
+_APART = 2.0  # cells from which on two stones share no nodes
 
 
 def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[str, float]) -> str:
     """A run's summary beside the paper's values by the same names, where there are any."""
-    lines = [f"{title:32}{'paper':>8}{'here':>10}" if paper else f"{title:32}{'':>10}"]
-    for label, key, unit, form in _ROWS:
-        published = form.format(paper[key]) if form and key in paper else "-"
-        value = summary[key]
-        scale = 1e-3 if unit == "kJ/m" else 1.0
-        here = "-" if value is None else f"{value * scale:.2f}"
-        lines.append(f"{label:32}{f'{published:>8}' if paper else ''}{here:>10} {unit}")
+    lines = [f"{title:32}{'paper':>8}{'here':>10}" if paper else title]
+    grows = still_grows(summary)
+    for label, key, unit in _ROWS:
+        published = reference.published(key, paper[key]) if key in paper else "-"
+        here = "  still growing" if grows and key in _OF_PEAK else _shown(summary[key], unit)
+        lines.append(f"{label:32}{f'{published:>8}' if paper else ''}{here}")
     if "max_displacement_horizontal" in paper:
         lines.append(
             "The paper swaps the labels of horizontal and vertical; here they are put right."
         )
     gap = summary["smallest_gap_in_cells"]
     if gap is not None:
-        lines.append(
-            f"The nearest two stones are {gap:.2f} cells apart; closer than two they act as one."
-        )
+        sharing = "; closer than two cells stones share nodes" if gap < _APART else ""
+        lines.append(f"The nearest two stones are {gap:.2f} cells apart{sharing}.")
     rate = summary["point_steps_per_second"]
     if rate is not None:
         lines.append(
@@ -45,6 +47,11 @@ def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[s
             f"{summary['wall_seconds']:.1f} s: {rate / 1e6:.1f} M point-steps/s"
         )
     return "\n".join(lines)
+
+
+def _shown(value: float | None, unit: str) -> str:
+    scale = 1e-3 if unit == "kJ/m" else 1.0
+    return f"{'-' if value is None else f'{value * scale:.2f}':>10} {unit}"
 
 
 def repetition(first: Run, second: Run) -> str:

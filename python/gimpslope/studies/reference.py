@@ -62,7 +62,10 @@ PAPER = MappingProxyType(
     }
 )
 """The paper's figures for each slope, in SI units by the names of a run's summary, with the labels
-of horizontal and vertical displacement put right; of slope A's speed it says "exceeding 3 m/s"."""
+of horizontal and vertical displacement put right."""
+
+LOWER_BOUNDS = frozenset({"speed_at_peak"})
+"""Of these the paper says what they exceed: the speed of slope A is "exceeding 3 m/s"."""
 
 STONE_MODULI = MappingProxyType({"deformable": 20e9, "softened": 0.5e9})
 STONE_MODELS = (*STONE_MODULI, "rigid")
@@ -207,6 +210,11 @@ def setup(
 def title(name: str) -> str:
     """A slope as the paper names it and we do: "A soil", "B arbitrary" and so on."""
     return f"{SLOPES[name]} {name}"
+
+
+def published(name: str, value: float) -> str:
+    """One of the paper's figures in words, by its name: "1.6", or "> 3" for a lower bound."""
+    return f"{'> ' * (name in LOWER_BOUNDS)}{value:g}"
 
 
 def reading_of(scene: Scene) -> str:

@@ -37,7 +37,8 @@ _PAUSE = 0.01  # s
 
 
 def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:
-    """A reading that meets a write of the run is tried again."""
+    """A reading that meets a write of the run is tried again; a file that HDF5 cannot read even
+    then is refused as damaged."""
 
     @wraps(read)
     def reading(*arguments: Parameters.args, **names: Parameters.kwargs) -> Found:
@@ -48,16 +49,31 @@ def _patient(read: Callable[Parameters, Found]) -> Callable[Parameters, Found]:
                 raise
             except OSError:
                 time.sleep(_PAUSE)
-        return read(*arguments, **names)
+        with _damage_named(arguments[0]):
+            return read(*arguments, **names)
 
     return reading
+
+
+@contextmanager
+def _damage_named(path: object) -> Iterator[None]:
+    """An error of HDF5, which has no number as those of the system have, names the file."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno is not None:
+            raise
+        raise ValueError(
+            f"path must name a whole run file, got {str(path)!r}, which is damaged: {error}"
+        ) from error
 
 
 @_patient
 def read_attributes(path: str | PathLike[str]) -> dict[str, Any]:
     """The root attributes; JSON text is decoded.
 
-    Raises `FileNotFoundError`, or `ValueError` for a file that is not a run file of this format.
+    Raises `FileNotFoundError`, or `ValueError` for a file that is damaged or not a run file of this
+    format.
     """
     with _opened(path) as file:
         attributes = {name: _plain(value) for name, value in file.attrs.items()}

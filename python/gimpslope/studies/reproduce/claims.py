@@ -16,6 +16,7 @@ from .judging import (
     SOIL,
     STONES,
     Draws,
+    Form,
     Judgement,
     Part,
     alike,
@@ -27,7 +28,9 @@ from .judging import (
 )
 
 _PAPER = reference.PAPER
-_SHARE, _METRES, _SECONDS, _SPEED = "{:.1%}", "{:.2f} m", "{:.2f} s", "{:.2f} m/s"
+_SHARE, _COUNT, _RATIO = Form(1, "%", 100.0), Form(0), Form(3)
+_SECONDS, _SPEED, _ENERGY, _MASS = Form(2, "s"), Form(2, "m/s"), Form(1, "kJ/m"), Form(1, "t/m")
+_METRES, _MILLIMETRES = Form(2, "m"), Form(0, "mm")
 _FARTHEST_WITH_STONES = _PAPER["arbitrary"]["max_displacement_total"]
 _ANY = math.inf
 
@@ -70,17 +73,17 @@ CLAIMS = (
     Claim(
         "kinetic energy",
         "The soil slope has the highest peak, then arbitrary, round and oval stones.",
-        (ordered("peak_energy", "{:.1f} kJ/m", SOIL, *STONES),),
+        (ordered("peak_energy", _ENERGY, SOIL, *STONES),),
     ),
     Claim(
         "kinetic energy",
         "The peak of the soil slope is 2.5 times that with arbitrary stones (within 15 %).",
-        (ratio("peak_energy", "{:.1f} kJ/m", SOIL, "arbitrary", 2.5, 0.15),),
+        (ratio("peak_energy", _ENERGY, SOIL, "arbitrary", 2.5, 0.15),),
     ),
     Claim(
         "kinetic energy",
         "The soil slope is lighter than those with stones.",
-        (ordered("mass", "{:.1f} t/m", STONES, SOIL),),
+        (ordered("mass", _MASS, STONES, SOIL),),
     ),
     Claim(
         "speed",
@@ -119,21 +122,19 @@ CLAIMS = (
     Claim(
         "plastic zone",
         "The plastic zone of the soil slope is one, from 1 s to 5 s.",
-        tuple(
-            near(f"{time}_bands", "{:.0f}", 1, 0.5, (SOIL,)) for time in ("early", "peak", "late")
-        ),
+        tuple(near(f"{time}_bands", _COUNT, 1, 0.5, (SOIL,)) for time in ("early", "peak", "late")),
     ),
     Claim(
         "plastic zone",
         "In slopes with stones several plastic bands interlace (here: at 1 s they enclose more "
         "islands than in the soil slope).",
-        (ordered("early_islands", "{:.0f}", STONES, SOIL),),
+        (ordered("early_islands", _COUNT, STONES, SOIL),),
     ),
     Claim(
         "plastic zone",
         "The bands go around the stones (here: a tenth as much of the stones is plastic as of the "
         "soil, or less).",
-        (between("stone_over_soil", "{:.3f}", -_ANY, 0.1, STONES),),
+        (between("stone_over_soil", _RATIO, -_ANY, 0.1, STONES),),
     ),
     Claim(
         "plastic zone",
@@ -190,7 +191,7 @@ CLAIMS = (
         "final shape",
         "The surface is smoothest in the soil slope, then with round and oval stones, and uneven "
         "with arbitrary ones.",
-        (ordered("roughness", "{:.0f} mm", "arbitrary", ("round", "oval"), SOIL),),
+        (ordered("roughness", _MILLIMETRES, "arbitrary", ("round", "oval"), SOIL),),
     ),
     Claim(
         "conclusion",

@@ -39,6 +39,31 @@ class Judgement(NamedTuple):
     figures: str
 
 
+class Form(NamedTuple):
+    """How a figure is shown.
+
+    Attributes
+    ----------
+    digits : behind the point
+    unit : may be empty
+    factor : from the figure to the unit
+    """
+
+    digits: int
+    unit: str = ""
+    factor: float = 1.0
+
+    def shown(self, one: Sample) -> str:
+        """The mean, and what chance does to it where the digits can tell, in the unit."""
+        if math.isnan(one.mean):
+            return NOT_REACHED
+        mean, chance = (
+            f"{self.factor * value:.{self.digits}f}" for value in (one.mean, one.deviation)
+        )
+        spread = f" ± {chance}" if float(chance) > 0 else ""
+        return f"{mean}{spread} {self.unit}".rstrip()
+
+
 class _Margin(NamedTuple):
     value: float
     deviation: float
@@ -76,7 +101,7 @@ def cannot_tell(samples: Iterable[Sample]) -> str:
     return "one draw cannot tell" if draws <= 1 else f"{draws} draws cannot tell"
 
 
-def ordered(figure: str, form: str, *order: str | Sequence[str]) -> Part:
+def ordered(figure: str, form: Form, *order: str | Sequence[str]) -> Part:
     """Each slope, or each of a group, has a larger figure than every one of the next group."""
     groups = [(group,) if isinstance(group, str) else tuple(group) for group in order]
 
@@ -94,7 +119,7 @@ def ordered(figure: str, form: str, *order: str | Sequence[str]) -> Part:
     return part
 
 
-def alike(figure: str, form: str, share: float, slopes: Sequence[str]) -> Part:
+def alike(figure: str, form: Form, share: float, slopes: Sequence[str]) -> Part:
     """The slopes differ from their mean by at most a share of it."""
 
     def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
@@ -111,7 +136,7 @@ def alike(figure: str, form: str, share: float, slopes: Sequence[str]) -> Part:
 
 
 def between(
-    figure: str, form: str, low: float, high: float, slopes: Sequence[str] = SLOPES
+    figure: str, form: Form, low: float, high: float, slopes: Sequence[str] = SLOPES
 ) -> Part:
     """The figure of every one of the slopes is between two ends, which may be infinite."""
 
@@ -125,12 +150,12 @@ def between(
     return part
 
 
-def near(figure: str, form: str, value: float, tolerance: float, slopes: Sequence[str]) -> Part:
+def near(figure: str, form: Form, value: float, tolerance: float, slopes: Sequence[str]) -> Part:
     """The figure of every one of the slopes is a value within a tolerance."""
     return between(figure, form, value - tolerance, value + tolerance, slopes)
 
 
-def ratio(figure: str, form: str, larger: str, smaller: str, value: float, share: float) -> Part:
+def ratio(figure: str, form: Form, larger: str, smaller: str, value: float, share: float) -> Part:
     """The figure of one slope is that of another times a value, within a share of it."""
 
     def part(draws: Draws, spread: Mapping[str, float]) -> _Found:
@@ -141,7 +166,8 @@ def ratio(figure: str, form: str, larger: str, smaller: str, value: float, share
         here = above.mean / below.mean
         relative = math.hypot(above.deviation / above.mean, below.deviation / below.mean)
         margin = _Margin(share * value - abs(here - value), here * relative)
-        return _Found(found, [margin], f"{_shown(found, form)}: {here:.2f}")
+        told = "" if math.isnan(here) else f": {here:.2f}"
+        return _Found(found, [margin], f"{_shown(found, form)}{told}")
 
     return part
 
@@ -164,12 +190,5 @@ def _sign(margin: _Margin) -> int:
     return 1 if margin.value > 0 else -1
 
 
-def _shown(found: Mapping[str, Sample], form: str) -> str:
-    return ", ".join(f"{name} {_in_words(one, form)}" for name, one in found.items())
-
-
-def _in_words(one: Sample, form: str) -> str:
-    if math.isnan(one.mean):
-        return NOT_REACHED
-    chance = f" ± {one.deviation / abs(one.mean):.0%}" if one.mean and one.deviation > 0 else ""
-    return form.format(one.mean) + chance
+def _shown(found: Mapping[str, Sample], form: Form) -> str:
+    return ", ".join(f"{name} {form.shown(one)}" for name, one in found.items())

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
@@ -94,7 +95,7 @@ def plan(
     Raises
     ------
     TypeError, ValueError
-        If a parameter is refused.
+        If a parameter is refused; the error names the slope that it is refused for.
     FileExistsError
         If a file of those names holds something else and may not be replaced.
     """
@@ -107,17 +108,18 @@ def plan(
         drawn = tuple(draws) if name != SOIL else (draws[0],)
         runs = []
         for seed in drawn:
-            setup = reference.setup(
-                name,
-                reading=reading,
-                cell=side,
-                duration=duration,
-                seed=seed,
-                stone_model=stone_model,
-                stone_modulus=stone_modulus,
-                time_step=time_step,
-            )
-            _check_step(setup)
+            with _named(f"slope {name}, cell {side:g} m"):
+                setup = reference.setup(
+                    name,
+                    reading=reading,
+                    cell=side,
+                    duration=duration,
+                    seed=seed,
+                    stone_model=stone_model,
+                    stone_modulus=stone_modulus,
+                    time_step=time_step,
+                )
+                _check_step(setup)
             grid = "" if side == cell else f"cell_{side:g}"
             file = f"{reading}_{name}.h5" if name == SOIL else f"{reading}_{name}_{seed}.h5"
             runs.append(planned.plan(Path(directory) / grid / file, setup, overwrite=overwrite))
@@ -133,6 +135,16 @@ def plan(
             if name in refined
         ),
     )
+
+
+@contextmanager
+def _named(slope: str) -> Iterator[None]:
+    """Refusals say which slope they are of."""
+    try:
+        yield
+    except (TypeError, ValueError) as refused:
+        kind = TypeError if isinstance(refused, TypeError) else ValueError
+        raise kind(f"{slope}: {refused}") from refused
 
 
 def _few(seeds: Sequence[int]) -> Sequence[int]:

@@ -17,6 +17,7 @@ class Quantity(NamedTuple):
     title, unit : in words
     digits : behind the point
     published : its name in `reference.PAPER`, None where the paper gives none
+    counted : whether it is a count, which has no limit as the cell shrinks
     """
 
     figure: str
@@ -24,6 +25,7 @@ class Quantity(NamedTuple):
     unit: str
     digits: int
     published: str | None = None
+    counted: bool = False
 
     @property
     def label(self) -> str:
@@ -34,9 +36,10 @@ class Quantity(NamedTuple):
         """The paper's value for a slope; NaN where it gives none."""
         return reference.PAPER[slope].get(self.published or "", math.nan)
 
-    def is_bound(self, slope: str) -> bool:
+    @property
+    def is_bound(self) -> bool:
         """Whether the paper gives what the figure exceeds."""
-        return (slope, self.published) in _LOWER_BOUNDS
+        return self.published in reference.LOWER_BOUNDS
 
     def shown(self, value: float) -> str:
         """A value in words."""
@@ -45,10 +48,8 @@ class Quantity(NamedTuple):
     def shown_paper(self, slope: str) -> str:
         """The paper's value for a slope in words."""
         paper = self.paper(slope)
-        return "-" if math.isnan(paper) else f"{'> ' * self.is_bound(slope)}{paper:g}"
+        return "-" if math.isnan(paper) else reference.published(self.published or "", paper)
 
-
-_LOWER_BOUNDS = {("soil", "speed_at_peak")}  # of this the paper says "exceeding"
 
 QUANTITIES = (
     Quantity("peak_time", "time of peak kinetic energy", "s", 2, "time_of_peak"),
@@ -62,6 +63,6 @@ QUANTITIES = (
     Quantity("vertical", "largest vertical displacement", "m", 2, "max_displacement_vertical"),
     Quantity("run_out", "run-out of 99 % of the mass", "m", 2),
     Quantity("plastic_soil", "share of the soil that is plastic", "", 3),
-    Quantity("peak_bands", "plastic bands at the peak", "", 0),
+    Quantity("peak_bands", "plastic bands at the peak", "", 0, counted=True),
     Quantity("roughness", "roughness of the surface", "mm", 0),
 )

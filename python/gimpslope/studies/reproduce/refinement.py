@@ -1,14 +1,14 @@
 """Slopes of the study on several grids: how its figures and the claims judged by them depend on
 the cell.
 
-In one velocity field stones closer than two cells share nodes and act as one, and each acts about a
-cell larger than it is, so that slopes with stones depend on the cell more than soil does.
+In one velocity field stones closer than two cells share nodes, and each acts about a cell larger
+than it is, so that slopes with stones depend on the cell more than soil does.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import NamedTuple
@@ -24,6 +24,9 @@ from ..richardson import Extrapolation, extrapolate
 from .claims import judge
 from .judging import DOES_NOT, HOLDS, NOT_REACHED, NOT_RUN, Draws
 from .quantities import QUANTITIES
+
+Gaps = Mapping[str, Sequence[Sequence[float]]]
+"""Between the two nearest stones, in cells, by the name of the slope: rows of draws, one a grid."""
 
 _PICTURED = ("peak_energy", "peak_time", "peak_speed", "total", "horizontal", "vertical")
 
@@ -51,10 +54,12 @@ class Refinement:
     Attributes
     ----------
     grids : the draws of each slope by its name, by the cell (m), coarse to fine
+    gaps : of the slopes that have stones, coarse to fine
     survivals : of each claim, in the order of the paper
     """
 
     grids: Mapping[float, Draws]
+    gaps: Gaps
     survivals: tuple[Survival, ...]
 
     @property
@@ -74,12 +79,12 @@ class Refinement:
         return extrapolate(means.tolist()) if np.isfinite(means).all() else None
 
 
-def refinement(grids: Mapping[float, Draws], spread: Mapping[str, float]) -> Refinement:
+def refinement(grids: Mapping[float, Draws], gaps: Gaps, spread: Mapping[str, float]) -> Refinement:
     """Judge the claims on every grid, as far as they are about these slopes.
 
     Parameters
     ----------
-    grids : the draws of each slope by its name, by the cell (m), coarse to fine
+    grids, gaps : as in `Refinement`
     spread : share by which chance moves each figure from draw to draw
     """
     by_cell = [judge(draws, spread) for draws in grids.values()]
@@ -87,7 +92,7 @@ def refinement(grids: Mapping[float, Draws], spread: Mapping[str, float]) -> Ref
         _survival(dict(zip(grids, (judgement for _, judgement in claims), strict=True)))
         for claims in zip(*by_cell, strict=True)
     ]
-    return Refinement(grids, tuple(survivals))
+    return Refinement(grids, gaps, tuple(survivals))
 
 
 def _survival(judgements: Mapping[float, tuple[str, str]]) -> Survival:
@@ -118,12 +123,14 @@ def figure(found: Refinement) -> Figure:
     for ax, quantity in zip(axes.flat, quantities, strict=True):
         values = {title: found.values(slope, quantity.figure) for slope, title in titles.items()}
         paper = {title: quantity.paper(slope) for slope, title in titles.items()}
-        published = {title: value for title, value in paper.items() if not math.isnan(value)}
-        against_cell(tuple(found.grids), values, ax, reference=published)
+        paper = {title: value for title, value in paper.items() if not math.isnan(value)}
+        lines = {"bounds" if quantity.is_bound else "reference": paper}
+        against_cell(tuple(found.grids), values, ax, **lines)
         ax.set_title(quantity.label, fontsize="medium")
         if ax not in axes[-1]:
             ax.set_xlabel("")
         handles, names = ax.get_legend_handles_labels()
         labels |= dict(zip(names, handles, strict=True))
-    made.legend(labels.values(), labels.keys(), loc="outside lower center", ncols=len(labels))
+    columns = min(len(labels), 5)
+    made.legend(labels.values(), labels.keys(), loc="outside lower center", ncols=columns)
     return made

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping, Sequence
+from importlib.metadata import version
 from typing import TYPE_CHECKING
 
 import markdown as to_html
@@ -26,6 +28,7 @@ _FIGURES = {
     7: "displacement and shape in the end",
     8: "largest displacements",
 }
+_LIBRARIES = {"NumPy": "numpy", "shapely": "shapely", "h5py": "h5py"}
 _STYLE = (
     "body{font-family:sans-serif;max-width:70em;margin:2em auto;padding:0 1em;line-height:1.4}"
     "table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .6em;"
@@ -45,8 +48,10 @@ def markdown(studies: Sequence[Study]) -> str:
         "## Figures of the paper and of these runs\n",
         comparison(studies),
         "## Claims of the paper\n",
+        _verdicts(studies),
         "What decides must be larger than three times what chance brings about from draw to draw "
-        "of the stones (±: one standard deviation of the mean).\n",
+        "of the stones (±: one standard deviation of the mean, left out where it is below the last "
+        "digit).\n",
         *(_chance(one) for one in studies),
         claims(studies),
     ]
@@ -54,7 +59,7 @@ def markdown(studies: Sequence[Study]) -> str:
         if one.refinement:
             parts += [
                 f"## How the answer depends on the cell, reading `{one.reading}`\n",
-                "In one velocity field stones closer than two cells act as one, and each acts "
+                "In one velocity field stones closer than two cells share nodes, and each acts "
                 "about a cell larger than it is. *Limit*: by Richardson's extrapolation of the "
                 "three finest grids, where they converge; ±: between draws.\n",
                 grids(one.refinement),
@@ -115,8 +120,14 @@ def _settings(studies: Sequence[Study]) -> str:
         ("seeds of the stones", ", ".join(map(str, seeds))),
         *((f"{name} stones", _stones(studies[0].runs[name])) for name in STONES),
         ("gimpslope", "; ".join(versions)),
+        ("libraries, of this page", _libraries()),
     ]
     return table(("setting", "value"), rows)
+
+
+def _libraries() -> str:
+    versions = [f"{name} {version(package)}" for name, package in _LIBRARIES.items()]
+    return ", ".join([f"Python {platform.python_version()}", *versions])
 
 
 def _stones(draws: Sequence[Run]) -> str:
@@ -145,6 +156,14 @@ def _chance(one: Study) -> str:
     here, there = settings_of(one), KNOWN["from"]
     same = "as here" if here == there else f"while this is {here}"
     return f"Chance in `{one.reading}`: as known from five draws of each kind ({there}), {same}.\n"
+
+
+def _verdicts(studies: Sequence[Study]) -> str:
+    by_reading = [
+        f"`{reading}`: " + ", ".join(f"{verdict} {count}" for verdict, count in verdicts.items())
+        for reading, verdicts in counts(studies).items()
+    ]
+    return f"Of {len(studies[0].judgements)} claims, by verdict: {'; '.join(by_reading)}.\n"
 
 
 def counts(studies: Sequence[Study]) -> Mapping[str, Mapping[str, int]]:

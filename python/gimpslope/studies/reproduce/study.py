@@ -59,9 +59,13 @@ def study(plan: Plan, *, jobs: int = 1, progress: bool = True) -> list[Study]:
         measures = {name: _of(slope, measured) for name, slope in slopes.items()}
         spread = spread_of([measures[name] for name in STONES])
         grids: dict[float, dict[str, tuple[Measures, ...]]] = {}
+        gaps: dict[str, list[list[float]]] = {}
         for slope in plan.refined:
             if slope.reading == reading:
                 grids.setdefault(slope.cell, {})[slope.name] = _of(slope, measured)
+                apart = [run.summary["smallest_gap_in_cells"] for run in _of(slope, runs)]
+                if there := [gap for gap in apart if gap is not None]:
+                    gaps.setdefault(slope.name, []).append(there)
         studies.append(
             Study(
                 reading,
@@ -69,7 +73,7 @@ def study(plan: Plan, *, jobs: int = 1, progress: bool = True) -> list[Study]:
                 {name: _of(slope, runs) for name, slope in slopes.items()},
                 measures,
                 judge(measures, spread),
-                refinement(grids, spread) if grids else None,
+                refinement(grids, gaps, spread) if grids else None,
             )
         )
     return studies

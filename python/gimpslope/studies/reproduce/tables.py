@@ -61,6 +61,10 @@ def grids(found: Refinement) -> str:
             row = [reference.title(name), quantity.label, quantity.shown_paper(name)]
             row += [_shown(draws, quantity) for draws in found.values(name, quantity.figure)]
             rows.append([*row, _limit(found, name, quantity)])
+        if name in found.gaps:
+            gaps = [", ".join(f"{gap:.2f}" for gap in draws) for draws in found.gaps[name]]
+            label = "smallest gap between stones of each draw, cells"
+            rows.append([reference.title(name), label, "-", *gaps, "-"])
     return table([*head, "limit"], rows)
 
 
@@ -80,13 +84,13 @@ def _difference(here: float, quantity: Quantity, slope: str) -> str:
     paper = quantity.paper(slope)
     if np.isnan(paper) or np.isnan(here):
         return "-"
-    if quantity.is_bound(slope) and here > paper:
+    if quantity.is_bound and here > paper:
         return "above"
     return f"{here - paper:+.{quantity.digits}f}"
 
 
 def _limit(found: Refinement, slope: str, quantity: Quantity) -> str:
-    limit = found.limit(slope, quantity.figure)
+    limit = None if quantity.counted else found.limit(slope, quantity.figure)
     if limit is None:
         return "-"
     if limit.behaviour != "converges":
