@@ -42,7 +42,8 @@ def against_cell(
                 ax.axhline(published[name], color=colour, ls=style, linewidth=1.2, label=label)
     ax.set_xlabel("cell (m)")
     ax.set_xlim(0.0, 1.08 * max(cells))
-    ax.set_ylim(bottom=0.0)
-    ax.margins(y=0.15)
+    _, highest = ax.dataLim.intervaly
+    if highest > 0:
+        ax.set_ylim(0.0, 1.1 * highest)
     ax.grid(alpha=0.3)
     return ax

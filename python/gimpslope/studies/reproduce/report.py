@@ -116,7 +116,7 @@ def _settings(studies: Sequence[Study]) -> str:
         ("cell", f"{first.scene.cell:g} m, {len(first.points):,} points"),
         ("time step", f"{step:g} of the Courant limit" if kind == "courant" else f"{step:g} s"),
         ("slide", f"{first.stages.slide.duration:g} s"),
-        ("model of the stones", _model(studies[0])),
+        ("Young's modulus of the stones", _model(studies[0])),
         ("seeds of the stones", ", ".join(map(str, seeds))),
         *((f"{name} stones", _stones(studies[0].runs[name])) for name in STONES),
         ("gimpslope", "; ".join(versions)),
@@ -146,7 +146,7 @@ def settings_of(one: Study) -> str:
 
 def _model(one: Study) -> str:
     stone = one.runs[STONES[0]][0].scene.stone
-    return f"{stone.young:g} Pa" if isinstance(stone, Deformable) else "no deformation"
+    return f"{stone.young:g} Pa" if isinstance(stone, Deformable) else "infinite"
 
 
 def _chance(one: Study) -> str:
