@@ -12,8 +12,8 @@ def add_stone_model(parser: argparse._ActionsContainer) -> None:
     parser.add_argument(
         "--stone-model",
         choices=list(reference.STONE_MODELS),
-        help="deformable: 20e9 Pa, the paper's (the default); softened: 0.5e9 Pa, six times "
-        "faster; rigid: each stone moves as one, 19 times faster",
+        help="deformable: 20e9 Pa, the paper's (the default); softened: 0.5e9 Pa, a sixth of the "
+        "steps; rigid: each stone moves as one, the steps of soil alone",
     )
     parser.add_argument(
         "--stone-modulus",
