@@ -60,7 +60,8 @@ void Bodies::take_shape(const Points& points, double half_length, double cell) {
       volume_[k] = points.volume[0][m];
       for (int c = 0; c < 2; ++c) {
         sum[c] += mass[m] * points.position[c][m];
-        half_length_[c][k] = points.half_length.empty() ? half_length : points.half_length[c][m];
+        const double own = points.half_length.empty() ? half_length : points.half_length[c][m];
+        half_length_[c][k] = own > 0.0 ? own : 0.5 * std::sqrt(volume_[k]);
       }
     }
     for (int c = 0; c < 2; ++c) state.centre[c] = sum[c] / mass_[b];
@@ -103,6 +104,7 @@ void Bodies::take_motion(Points& points) {
     state.velocity[0] = px / mass_[b];
     state.velocity[1] = py / mass_[b];
     state.spin = of_places > 0.0 ? turn / of_places : 0.0;
+    reports_[b].speed = 0.0;  // until the next step; points are looked at before that
     for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
       vx[member_[k]] = state.velocity[0] - state.spin * arm(1, k);
       vy[member_[k]] = state.velocity[1] + state.spin * arm(0, k);
@@ -119,6 +121,7 @@ void Bodies::stop() {
     }
     state.angular_impulse -= inertia_[b] * state.spin;
     state.spin = 0.0;
+    reports_[b].speed = 0.0;
   }
 }
 

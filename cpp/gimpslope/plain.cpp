@@ -45,17 +45,16 @@ Plain::Plain(const InitialPoints& given, const std::vector<Material>& materials,
              std::array<double, 2> origin, const std::array<Wall, 4>& walls, const Method& method,
              std::array<double, 2> gravity, int margin, InstructionSet instruction_set)
     : method_(method), step_(find_step(instruction_set)) {
+  for (const Material& material : materials)
+    require(material.law != LawKind::rigid, "materials", "a rigid one",
+            "deformable in the plain loop");
   check(given, materials, method.shape);
   check(method);
   require(method.shape == "ugimp", "shape", method.shape, "ugimp in the plain loop");
   require(method.volumetric_strain == VolumetricStrain::point, "volumetric_strain", "cell_average",
           "point in the plain loop");
   require(margin >= 2, "margin", margin, "at least 2 cells");
-  for (const Material& material : materials) {
-    require(material.law != LawKind::rigid, "materials", "a rigid one",
-            "deformable in the plain loop");
-    laws_.push_back(law(material));
-  }
+  for (const Material& material : materials) laws_.push_back(law(material));
   double low[2] = {given.position[0], given.position[1]}, high[2] = {low[0], low[1]};
   for (std::size_t k = 0; k < given.mass.size(); ++k) {
     PlainPoint p{};

@@ -97,6 +97,7 @@ struct HeldBody {
   double mass, inertia;  // kg/m; kg m
   double centre[2];      // m
   double velocity[2], spin;
+  double damping[2], damping_moment;  // N/m; N m/m
 };
 
 /// What a body reports of a step.

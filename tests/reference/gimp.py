@@ -1,11 +1,23 @@
 """The material points and their step: update stress first (USF)."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import ledger as accounts
+from .bodies import (
+    Body,
+    Rigid,
+    Whole,
+    cross,
+    held_nodes,
+    near_walls,
+    overlaps,
+    resolve,
+    shares,
+    wall_contacts,
+)
 from .drucker_prager import (
     Material,
     elastic_increment,
@@ -26,9 +38,10 @@ class Reference:
 
     The state is in plain attributes that may be read and assigned: position, velocity (n, 2);
     stress (n, 4) as xx, yy, zz, xy; body_force (n, 2), m/s2; mass, volume, plastic_strain (n,);
-    half_length (n, 2); ledger, J/m;
-    deformation_gradient (n, 2, 2); materials; time. The grid reaches `margin` cells beyond the
-    first positions; a point that leaves it is an error.
+    half_length (n, 2); ledger, J/m; deformation_gradient (n, 2, 2); materials; time. But for
+    position and velocity of the points of rigid stones, which follow `bodies`, in the order of the
+    stones' numbers. The grid reaches `margin` cells beyond the first positions; a point that leaves
+    it is an error.
     """
 
     def __init__(
@@ -39,7 +52,8 @@ class Reference:
         mass: ArrayLike,
         volume: ArrayLike,
         material: ArrayLike,
-        materials: Sequence[Material],
+        materials: Sequence[Material | Rigid],
+        stone: ArrayLike | None = None,
         *,
         cell: float,
         origin: tuple[float, float],
@@ -75,6 +89,23 @@ class Reference:
         self.first_half_length = self.half_length.copy()
         self.first_volume = self.volume.copy()
         self.time = 0.0
+        rigid = [i for i, material in enumerate(self.materials) if isinstance(material, Rigid)]
+        self.rigid = np.isin(self.material, rigid)
+        number = np.full(n, -1) if stone is None else np.array(stone, int)
+        square = np.repeat(np.sqrt(self.volume)[:, None] / 2, 2, axis=1)
+        domain = square if shape == "linear" else self.half_length
+        self.bodies = [
+            Body(
+                np.flatnonzero(number == k),
+                self.position,
+                self.velocity,
+                self.mass,
+                self.volume,
+                domain,
+            )
+            for k in np.unique(number[self.rigid])
+        ]
+        self._follow_bodies()
 
         self.cell, self.walls, self.shape = cell, list(walls), shape
         self.domain_update, self.volume_update = domain_update, volume_update
@@ -108,10 +139,10 @@ class Reference:
         kind, value = self.step_rule
         if kind == "fixed":
             return value
-        stiffness = np.empty(len(self.mass))
-        for i, material in enumerate(self.materials):
+        stiffness = np.zeros(len(self.mass))
+        for material, of in self._deformable():
             _, shear, bulk = moduli(material)
-            stiffness[self.material == i] = bulk + 4 * shear / 3
+            stiffness[of] = bulk + 4 * shear / 3
         wave = np.sqrt(stiffness * self.volume / self.mass).max()
         flow = np.linalg.norm(self.velocity, axis=1).max()
         return float(value * self.cell / (wave + flow))
@@ -145,10 +176,19 @@ class Reference:
         if not np.allclose(s.sum(axis=1), 1.0, atol=1e-9):
             raise RuntimeError("a point has left the grid; make margin larger")
 
-        mass = s.T @ self.mass
-        momentum = s.T @ (self.mass[:, None] * self.velocity)
+        soft_mass = np.where(self.rigid, 0.0, self.mass)
+        mass = s.T @ soft_mass
+        momentum = s.T @ (soft_mass[:, None] * self.velocity)
         v_raw = _divide(momentum, mass)
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
+        held, contacts = [], []
+        if self.bodies:
+            share = shares(self.bodies, self.shape, self.lines, self.cell)
+            soil = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
+            held = list(held_nodes(share, soil))
+            contacts = list(overlaps(self.bodies, share, self.nodes))
+        for stone, of in zip(self.bodies, held, strict=True):
+            v[of] = stone.velocity_at(self.nodes[of])
 
         velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
         cells = np.unique(
@@ -158,24 +198,53 @@ class Reference:
             trace = np.trace(velocity_gradient, axis1=1, axis2=2)
             change = (self._cell_mean(trace, cells) - trace) / 2
             velocity_gradient = velocity_gradient + change[:, None, None] * np.eye(2)
+        velocity_gradient[self.rigid] = 0.0
         self._deform(velocity_gradient, dt)
 
         sigma = _tensor(self.stress)[:, :2, :2]
         if self.volumetric_strain == "cell_average":
             mean = np.trace(sigma, axis1=1, axis2=2) / 2
             sigma = sigma + (self._cell_mean(mean, cells) - mean)[:, None, None] * np.eye(2)
-        sigma = sigma * self.volume[:, None, None]
+        sigma = sigma * np.where(self.rigid, 0.0, self.volume)[:, None, None]
         internal = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
-        share = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
-        weight = mass[:, None] * self.gravity * share
-        body = s.T @ (self.mass[:, None] * self.body_force)
+        share_of_gravity = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
+        weight = mass[:, None] * self.gravity * share_of_gravity
+        body = s.T @ (soft_mass[:, None] * self.body_force)
         force = internal + weight + body
         damping = -self.local_damping * np.abs(force) * np.sign(v)
 
+        brought = momentum
         momentum = hold_momentum(
             momentum + dt * (force + damping), self.nodes, self.walls, self.cell
         )
         v_new = _divide(momentum, mass)
+        wholes, drags = [], []
+        for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
+            given = stone.point_mass[:, None] * self.body_force[stone.of]
+            pull = stone.mass * self.gravity * share_of_gravity
+            pull = pull + given.sum(axis=0) + force[of].sum(axis=0)
+            turn = float(
+                cross(stone.arms(), given).sum()
+                + cross(self.nodes[of] - stone.centre, force[of]).sum()
+            )
+            drag = -self.local_damping * np.abs(pull) * np.sign(stone.velocity)
+            drag_moment = float(-self.local_damping * abs(turn) * np.sign(stone.spin))
+            drags.append((drag, drag_moment))
+            wholes.append(
+                Whole(
+                    stone,
+                    stone.mass * stone.velocity + dt * (pull + drag),
+                    stone.inertia * stone.spin + dt * (turn + drag_moment),
+                    self.nodes[of],
+                    mass[of],
+                    brought[of],
+                )
+            )
+            damping[of] = 0.0
+            contacts += wall_contacts(number, stone, self.walls, self.cell, dt)
+        resolve(contacts, wholes)
+        for whole, of in zip(wholes, held, strict=True):
+            v_new[of] = whole.velocity_at(self.nodes[of])
         self.node_velocity = np.where(mass[:, None] > 0, v_new, NO_MOTION)
         accounts.nodes(
             self.ledger,
@@ -192,23 +261,47 @@ class Reference:
             full_weight=mass[:, None] * self.gravity,
             body=body,
             damping=damping,
+            held=np.any(held, axis=0) if held else np.zeros(len(mass), bool),
         )
 
         alpha = self.alpha(dt)
         pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
-        self.ledger.transfer += self._kinetic_energy()
+        self.ledger.transfer += self._kinetic_energy_of_soil()
         self.velocity = alpha * pic + (1 - alpha) * flip
-        self.ledger.transfer -= self._kinetic_energy()
+        self.ledger.transfer -= self._kinetic_energy_of_soil()
         self.position = self.position + dt * pic
+        for stone, whole, drag_of in zip(self.bodies, wholes, drags, strict=True):
+            taken, worked, damped = stone.follow(
+                whole,
+                dt,
+                self.gravity * share_of_gravity,
+                self.gravity,
+                stone.point_mass[:, None] * self.body_force[stone.of],
+                drag_of,
+            )
+            self.ledger.damping -= damped
+            self.ledger.rigidity -= taken
+            self.ledger.external += worked
+        self._follow_bodies()
         self._update_domains()
         self._damp_kinetic()
         self.time += dt
 
+    def _deformable(self) -> Iterator[tuple[Material, NDArray[np.bool_]]]:
+        """The deformable materials and their points."""
+        for i, material in enumerate(self.materials):
+            if not isinstance(material, Rigid):
+                yield material, self.material == i
+
+    def _follow_bodies(self) -> None:
+        for body in self.bodies:
+            self.position[body.of], self.velocity[body.of] = body.points()
+
     def _cell_mean(self, values: Array, cells: NDArray[np.int64]) -> Array:
-        """Mean over the volume of the points in the same cell."""
-        mean = np.empty_like(values)
-        for cell in np.unique(cells):
-            of = cells == cell
+        """Mean over the volume of the deformable points in the same cell."""
+        mean = np.zeros_like(values)
+        for cell in np.unique(cells[~self.rigid]):
+            of = (cells == cell) & ~self.rigid
             mean[of] = np.average(values[of], weights=self.volume[of])
         return mean
 
@@ -225,12 +318,10 @@ class Reference:
         spin = (velocity_gradient[:, 1, 0] - velocity_gradient[:, 0, 1]) * dt / 2
         turned = rotate(_tensor(self.stress), spin)
         trial = turned.copy()
-        for i, material in enumerate(self.materials):
-            of = self.material == i
+        for material, of in self._deformable():
             trial[of] += elastic_increment(material, strain[of])
         self.stress = self._return(_components(trial))
-        for i, material in enumerate(self.materials):
-            of = self.material == i
+        for material, of in self._deformable():
             accounts.points(
                 self.ledger,
                 material,
@@ -243,8 +334,7 @@ class Reference:
 
     def _return(self, stress: Array) -> Array:
         returned = stress.copy()
-        for i, material in enumerate(self.materials):
-            of = self.material == i
+        for material, of in self._deformable():
             tensor, plastic_strain = return_mapping(material, _tensor(stress[of]))
             returned[of] = _components(tensor)
             self.plastic_strain[of] += plastic_strain
@@ -252,13 +342,17 @@ class Reference:
 
     def _elastic_energy(self) -> float:
         energy = 0.0
-        for i, material in enumerate(self.materials):
-            of = self.material == i
-            energy += self.volume[of] @ energy_density(material, _tensor(self.stress[of]))
+        for material, of in self._deformable():
+            energy += float(self.volume[of] @ energy_density(material, _tensor(self.stress[of])))
         return float(energy)
 
-    def _kinetic_energy(self) -> float:
-        return float(np.sum(self.mass[:, None] * self.velocity**2) / 2)
+    def kinetic_energy(self) -> float:
+        """J/m."""
+        return self._kinetic_energy_of_soil() + sum(body.energy() for body in self.bodies)
+
+    def _kinetic_energy_of_soil(self) -> float:
+        of = ~self.rigid
+        return float(np.sum(self.mass[of, None] * self.velocity[of] ** 2) / 2)
 
     def _update_domains(self) -> None:
         if self.shape != "cpgimp" or self.domain_update == "none":
@@ -277,9 +371,11 @@ class Reference:
     def _damp_kinetic(self) -> None:
         if not self.kinetic_damping:
             return
-        energy = self._kinetic_energy()
+        energy = self.kinetic_energy()
         if energy < self.last_kinetic_energy:
             self.velocity = np.zeros_like(self.velocity)
+            for body in self.bodies:
+                body.stop()
             self.ledger.damping += energy
             energy = 0.0
         self.last_kinetic_energy = energy

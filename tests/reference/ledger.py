@@ -24,6 +24,7 @@ class Ledger:
     external: float = 0.0
     hypoelastic: float = 0.0
     integration: float = 0.0
+    rigidity: float = 0.0
 
 
 def elastic_strain(material: Material, stress: Array) -> Array:
@@ -72,8 +73,10 @@ def nodes(
     full_weight: Array,
     body: Array,
     damping: Array,
+    held: NDArray[np.bool_],
 ) -> None:
-    """Nodes go from the raw velocity to the one that walls allow, and by the forces to `after`."""
+    """Nodes go from the raw velocity to the one that walls allow, and by the forces to `after`;
+    those that rigid stones hold, by these."""
     m = mass[:, None]
     middle = (before + after) / 2
     impulse = m * (after - before) - dt * (internal + weight + body + damping)
@@ -82,8 +85,10 @@ def nodes(
         (-impulse * middle, (before == 0) | (after == 0)),
     ):
         rubbed = _rubbed(stopped, places, walls, cell)
-        ledger.friction += float(taken[rubbed].sum())
-        ledger.impact += float(taken[~rubbed].sum())
+        by_stones = np.broadcast_to(held[:, None], taken.shape)
+        ledger.rigidity += float(taken[by_stones].sum())
+        ledger.friction += float(taken[rubbed & ~by_stones].sum())
+        ledger.impact += float(taken[~rubbed & ~by_stones].sum())
     ledger.damping -= float(dt * np.sum(damping * middle))
     ledger.external += float(dt * np.sum((body + weight - full_weight) * middle))
     ledger.integration -= float(dt / 2 * np.sum((internal - full_weight) * (after - before)))

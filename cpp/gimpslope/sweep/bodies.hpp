@@ -1,11 +1,11 @@
 // Rigid bodies in a step, in a velocity field of their own.
 //
-// A body holds the nodes of whose cells it fills at least half (or half of its largest share, where
-// it is small): they move with it, and soil sticks to it there. Of other nodes it does not take
-// part, so that on average it acts as large as it is, and two bodies that share nodes do not stick.
-// Body and held nodes make one rigid body that keeps their momentum and angular momentum and takes
-// up the forces of the soil at the nodes. It is then kept from running into walls and other bodies
-// by impulses at the places where they meet, found by sequential iteration (Catto 2005, Iterative
+// A body holds the nodes up to some way outside of its edge, by the share of their cells that it
+// fills: they move with it, and soil sticks to it there. In other nodes it takes no part, so that
+// it acts as large as it is, and bodies that are near each other do not stick together. Body and
+// held nodes make one rigid body that keeps their momentum and angular momentum and takes up the
+// forces of the soil at the nodes. It is then kept from running into walls and other bodies by
+// impulses at the places where they meet, found by sequential iteration (Catto 2005, Iterative
 // dynamics with temporal coherence): along walls with their friction, between bodies without.
 #pragma once
 
@@ -20,7 +20,12 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-constexpr double kHeldShare = 0.5;  // of a cell, from which on a body holds its node
+/// Share of a cell from which on a body holds its node; where it is small, of its largest share. Of
+/// a flat edge those are held up to e^(-1/2) cells away, with a share of (1 - e^(-1/2))^2 / 2: soil
+/// that is strained between the edge, a part s of a cell away from the first free line of nodes,
+/// and the next such line is too soft or too stiff by turns as s goes from 0 to 1, and right in the
+/// mean.
+constexpr double kHeldShare = 0.0774;
 constexpr int kContactSweeps = 30;
 
 template <class Real>
@@ -233,12 +238,12 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
   const BodyState& state = all.state[body];
   BodyNode* nodes = all.nodes + static_cast<std::ptrdiff_t>(body) * all.window * all.window;
   double mass = all.mass[body], inertia = all.inertia[body], centre[2] = {};
-  double momentum[2] = {mass * (state.velocity[0] + input.dt * input.gravity_x),
-                        mass * (state.velocity[1] + input.dt * input.gravity_y)};
+  double momentum[2] = {mass * state.velocity[0], mass * state.velocity[1]};
   double turn = inertia * state.spin;  // angular momentum about the centre of the body alone
   const BodyForce given = body_force_on(view, body);
-  for (int c = 0; c < 2; ++c) momentum[c] += input.dt * given.force[c];
-  turn += input.dt * given.moment;
+  double force[2] = {}, moment = given.moment;
+  for (int c = 0; c < 2; ++c)
+    force[c] = given.force[c] + mass * (c == 0 ? input.gravity_x : input.gravity_y);
   for (int k = 0; k < all.reaches[body]; ++k) {
     BodyNode& node = nodes[k];
     const NodeStep s = forces_on(view.grid, node.node, input);
@@ -250,16 +255,28 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
     set(node.full_weight, s.full_weight);
     set(node.raw, s.raw);
     set(node.before, s.before);
-    const Pair gained = s.mass * s.raw + input.dt * s.total();
+    const Pair pull = s.total() - s.damping, brought = s.mass * s.raw;
     mass += s.mass;
     inertia += s.mass * (node.arm[0] * node.arm[0] + node.arm[1] * node.arm[1]);
     for (int c = 0; c < 2; ++c) {
       centre[c] += s.mass * node.arm[c];
-      momentum[c] += gained[c];
+      momentum[c] += brought[c];
+      force[c] += pull[c];
     }
-    turn += cross(node.arm, gained);
+    turn += cross(node.arm, brought);
+    moment += cross(node.arm, pull);
   }
+  // Local damping is of the whole, which has come to rest when its forces cancel.
   HeldBody& held = all.held[body];
+  const auto against = [&](double forcing, double motion) {
+    return -input.local_damping * std::fabs(forcing) * ((motion > 0.0) - (motion < 0.0));
+  };
+  for (int c = 0; c < 2; ++c) {
+    held.damping[c] = against(force[c], state.velocity[c]);
+    momentum[c] += input.dt * (force[c] + held.damping[c]);
+  }
+  held.damping_moment = against(moment, state.spin);
+  turn += input.dt * (moment + held.damping_moment);
   held.mass = mass;
   for (int c = 0; c < 2; ++c) {
     held.centre[c] = centre[c] / mass;
@@ -290,7 +307,9 @@ inline void add_wall_contacts(const View<double>& view, const StepInput& input, 
   for (int k = all.begin[body]; k < all.begin[body + 1]; ++k) {
     const double ox = all.offset[0][k], oy = all.offset[1][k];
     double arm[2] = {cosine * ox - sine * oy, sine * ox + cosine * oy};
+    const double side_ways = arm[1 - axis] > 0.0 ? 1.0 : -1.0;
     arm[axis] += outward * all.half_length[axis][k];
+    arm[1 - axis] += side_ways * all.half_length[1 - axis][k];
     const double gap = away - outward * arm[axis], along = arm[1 - axis];
     const int half = along > 0.0;
     const double rank = gap - kSpread * std::fabs(along);
@@ -308,7 +327,7 @@ inline void add_wall_contacts(const View<double>& view, const StepInput& input, 
     contact.other = -1;
     contact.normal[axis] = -outward;
     for (int c = 0; c < 2; ++c) contact.place[c] = state.centre[c] + arms[half][c];
-    contact.closing = gaps[half] / input.dt;
+    contact.closing = gaps[half] > 0.0 ? gaps[half] / input.dt : 0.0;  // not thrown out of it
     contact.friction = g.kind[side] == WallKind::fixed ? 1e300 : g.friction[side];
   }
 }
@@ -392,6 +411,7 @@ inline void release_nodes(const View<double>& view, const StepInput& input, int 
     ledger.external -= free.external;
     ledger.integration -= free.integration;
     ledger.transfer -= free.transfer;
+    s.damping = Pair::Zero();
     s.after = held_velocity;
     add_node(s, input.dt, ledger);
     for (int c = 0; c < 2; ++c)
@@ -417,8 +437,11 @@ inline void move_body(const View<double>& view, const StepInput& input, int body
   const Pair full_gravity(input.full_gravity_x, input.full_gravity_y);
   const Pair moved = input.dt * velocity;
   const BodyForce given = body_force_on(view, body);
-  const double work =
-      given.force[0] * moved[0] + given.force[1] * moved[1] + given.moment * input.dt * held.spin;
+  const auto work_of = [&](const double* force, double moment) {
+    return force[0] * moved[0] + force[1] * moved[1] + moment * input.dt * held.spin;
+  };
+  const double work = work_of(given.force, given.moment);
+  const double damped = work_of(held.damping, held.damping_moment);
   const Pair impulse = mass * (velocity - before - input.dt * gravity);
   for (int c = 0; c < 2; ++c) {
     state.impulse[c] += impulse[c];
@@ -429,7 +452,8 @@ inline void move_body(const View<double>& view, const StepInput& input, int body
   // All that the body gains but by gravity and body forces is taken from its surroundings.
   const double gain = 0.5 * mass * ((velocity - before) * (velocity + before)).sum() +
                       0.5 * inertia * (held.spin - state.spin) * (held.spin + state.spin) -
-                      mass * (gravity * moved).sum() - work;
+                      mass * (gravity * moved).sum() - work - damped;
+  report.ledger.damping -= damped;
   report.ledger.rigidity -= gain;
   report.ledger.external += work + mass * ((gravity - full_gravity) * moved).sum();
   state.spin = held.spin;

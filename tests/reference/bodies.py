@@ -1,0 +1,277 @@
+"""Stones that do not deform, in a velocity field of their own.
+
+A stone holds nodes by the share of their cells that it fills; with these it is one rigid body that
+takes up the forces of the soil there, and that walls and other stones push. Its own points give the
+grid nothing and take nothing from it.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .shapes import weights
+from .walls import SIDES, Wall
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+HELD_SHARE = 0.0774  # of a cell, or of the largest share where that is below one
+SPREAD = 1e-3  # at a wall: by how much of its distance to the side a place counts as nearer
+SWEEPS = 30
+_SIGNS = np.array([-1.0, 1.0])
+
+
+@dataclass
+class Rigid:
+    """The material of a rigid stone, kg/m3."""
+
+    density: float
+
+
+class Body:
+    """A stone: the indices `of` its points, its shape, where it is, and what has pushed it.
+
+    centre (2,), m; angle, radians; velocity (2,), m/s; spin, radians a second; impulse (2,) of all
+    but gravity, N s/m; angular_impulse, N m s/m.
+    """
+
+    def __init__(
+        self,
+        of: NDArray[np.int64],
+        position: Array,
+        velocity: Array,
+        mass: Array,
+        volume: Array,
+        half_length: Array,
+    ) -> None:
+        self.of, self.point_mass = of, mass[of]
+        self.volume, self.half_length = volume[of], half_length[of]
+        self.mass = float(self.point_mass.sum())
+        self.centre = self.point_mass @ position[of] / self.mass
+        self.offset = position[of] - self.centre
+        of_places = float(np.sum(self.point_mass[:, None] * self.offset**2))
+        self.inertia = of_places + float(np.sum(self.point_mass[:, None] * self.half_length**2) / 3)
+        reach = np.hypot(*self.offset.T) + np.hypot(*self.half_length.T)
+        self.radius = float(reach.max())
+        self.angle = 0.0
+        self.velocity = self.point_mass @ velocity[of] / self.mass
+        turn = self.point_mass @ cross(self.offset, velocity[of])
+        self.spin = float(turn / of_places) if of_places > 0 else 0.0
+        self.impulse, self.angular_impulse = np.zeros(2), 0.0
+
+    def arms(self) -> Array:
+        """From the centre to its points as they are."""
+        cosine, sine = np.cos(self.angle), np.sin(self.angle)
+        return self.offset @ np.array([[cosine, sine], [-sine, cosine]])
+
+    def points(self) -> tuple[Array, Array]:
+        """Places and velocities of its points."""
+        place = self.centre + self.arms()
+        return place, self.velocity_at(place)
+
+    def velocity_at(self, place: Array) -> Array:
+        return self.velocity + self.spin * quarter_turn(place - self.centre)
+
+    def energy(self) -> float:
+        """Kinetic, J/m."""
+        return (self.mass * float(self.velocity @ self.velocity) + self.inertia * self.spin**2) / 2
+
+    def stop(self) -> None:
+        """What ends its motion counts as an impulse."""
+        self.impulse = self.impulse - self.mass * self.velocity
+        self.angular_impulse -= self.inertia * self.spin
+        self.velocity, self.spin = np.zeros(2), 0.0
+
+    def follow(
+        self,
+        whole: "Whole",
+        dt: float,
+        gravity: Array,
+        full_gravity: Array,
+        body_force: Array,
+        drag: tuple[Array, float],
+    ) -> tuple[float, float, float]:
+        """Move as the whole does. Returns the energy that its surroundings give it, the work of
+        body forces and of the part of gravity that a ramp holds back, and that of damping.
+
+        body_force (n, 2) is that of its points, N/m; drag a force, N/m, and its moment.
+        """
+        velocity = whole.velocity_at(self.centre)
+        moved, turned = dt * velocity, dt * whole.spin
+        given = float(
+            body_force.sum(axis=0) @ moved + cross(self.arms(), body_force).sum() * turned
+        )
+        damped = float(drag[0] @ moved) + drag[1] * turned
+        before = self.energy()
+        self.impulse = self.impulse + self.mass * (velocity - self.velocity - dt * gravity)
+        self.angular_impulse += self.inertia * (whole.spin - self.spin)
+        self.velocity, self.spin = velocity, whole.spin
+        self.centre, self.angle = self.centre + moved, self.angle + turned
+        gain = self.energy() - before - self.mass * float(gravity @ moved) - given - damped
+        return gain, given + self.mass * float((gravity - full_gravity) @ moved), damped
+
+
+class Whole:
+    """A body and the nodes it holds as one, with their momentum and angular momentum.
+
+    Of the nodes place and momentum (k, 2) and mass (k,); of the body momentum (2,) and angular
+    momentum about its centre, with what all forces add to them.
+    """
+
+    def __init__(
+        self, body: Body, momentum: Array, turn: float, place: Array, mass: Array, of_nodes: Array
+    ) -> None:
+        self.mass = body.mass + float(mass.sum())
+        self.centre = (body.mass * body.centre + mass @ place) / self.mass
+        arms, own = place - self.centre, body.centre - self.centre
+        self.inertia = body.inertia + body.mass * float(own @ own) + float(mass @ (arms**2).sum(1))
+        self.velocity = (momentum + of_nodes.sum(axis=0)) / self.mass
+        turn = turn + float(cross(own, momentum) + cross(arms, of_nodes).sum())
+        self.spin = turn / self.inertia
+
+    def velocity_at(self, place: Array) -> Array:
+        return self.velocity + self.spin * quarter_turn(place - self.centre)
+
+    def push(self, place: Array, impulse: Array) -> None:
+        self.velocity = self.velocity + impulse / self.mass
+        self.spin += float(cross(place - self.centre, impulse)) / self.inertia
+
+
+def shares(bodies: Sequence[Body], shape: str, lines: tuple[Array, Array], cell: float) -> Array:
+    """The share of each node's cell that each body fills, (n_bodies, n_nodes)."""
+    return np.array(
+        [
+            body.volume @ weights(shape, body.points()[0], body.half_length, lines, cell)[0]
+            for body in bodies
+        ]
+    ) / (cell**2)
+
+
+def least_share(share: Array) -> Array:
+    """The share from which on each body holds a node, (n_bodies, 1)."""
+    return np.asarray(HELD_SHARE * np.minimum(share.max(axis=1, keepdims=True), 1.0))
+
+
+def held_nodes(share: Array, allowed: Mask) -> Mask:
+    """The nodes that each body holds; of several bodies the one with the largest share may."""
+    largest = share.argmax(axis=0) == np.arange(len(share))[:, None]  # the first one on a tie
+    return np.asarray((share >= least_share(share)) & largest & allowed)
+
+
+def near_walls(nodes: Array, walls: Sequence[Wall], cell: float) -> Mask:
+    """Nodes on or beyond a wall, which no body holds."""
+    near = np.zeros(len(nodes), bool)
+    for (axis, into), (kind, _, position) in zip(SIDES, walls, strict=True):
+        near |= (kind != "free") & (into * (nodes[:, axis] - position) >= -1e-9 * cell)
+    return near
+
+
+@dataclass
+class Contact:
+    """Where a body meets a wall or the `other` body; the normal (2,) points away from these."""
+
+    body: int
+    other: int | None
+    normal: Array
+    place: Array
+    closing: float  # the speed that would close the gap in the step
+    friction: float
+    pushed: float = 0.0
+    rubbed: float = 0.0
+
+
+def overlaps(bodies: Sequence[Body], share: Array, nodes: Array) -> Iterator[Contact]:
+    """Contacts of bodies that together fill more than a node's cell: at the mean place of such
+    nodes, along the line between their centres. Each with the one that fills the most so far."""
+    along_rows = np.lexsort(nodes.T)
+    for b in range(1, len(bodies)):
+        largest = share[:b].argmax(axis=0)
+        before = share[:b].max(axis=0)
+        meet = (before > 0) & (share[b] > 0) & (before + share[b] > 1)
+        for a in dict.fromkeys(largest[along_rows][meet[along_rows]].tolist()):
+            of = meet & (largest == a)
+            place = np.average(nodes[of], axis=0, weights=share[a, of] * share[b, of])
+            between = bodies[a].centre - bodies[b].centre
+            length = float(np.hypot(*between))
+            normal = between / length if length > 0 else np.zeros(2)
+            yield Contact(a, b, normal, place, 0.0, 0.0)
+
+
+def wall_contacts(
+    number: int, body: Body, walls: Sequence[Wall], cell: float, dt: float
+) -> Iterator[Contact]:
+    """Contacts of a body with the walls near it, one to either side of its centre."""
+    for (axis, into), (kind, friction, position) in zip(SIDES, walls, strict=True):
+        away = into * (position - body.centre[axis])
+        if kind == "free" or away - body.radius > cell:
+            continue
+        arms = body.arms()
+        arms[:, axis] += into * body.half_length[:, axis]
+        along = arms[:, 1 - axis]
+        arms[:, 1 - axis] += np.where(along > 0, 1.0, -1.0) * body.half_length[:, 1 - axis]
+        gap, along = away - into * arms[:, axis], arms[:, 1 - axis]
+        rank = gap - SPREAD * np.abs(along)
+        for side in (along <= 0, along > 0):
+            if not side.any() or rank[side].min() >= 2 * cell:
+                continue
+            k = np.flatnonzero(side)[rank[side].argmin()]
+            normal = np.zeros(2)
+            normal[axis] = -into
+            most = {"fixed": 1e300, "coulomb": friction, "roller": 0.0}[kind]
+            yield Contact(number, None, normal, body.centre + arms[k], max(gap[k], 0.0) / dt, most)
+
+
+def resolve(contacts: Sequence[Contact], wholes: Sequence[Whole]) -> None:
+    """Impulses by which no body runs into what it touches: sequential iteration (Catto 2005).
+
+    The same algorithm as the kernel's, whose result after so many sweeps is part of the method: at
+    each contact in turn the impulse along the normal that leaves no closing speed beyond the one
+    that closes the gap, of which the sum may not pull; then the one across that ends the sliding,
+    of which the sum is at most the friction coefficient times the other.
+    """
+    for _ in range(SWEEPS):
+        for contact in contacts:
+            sides = [(1.0, wholes[contact.body])]
+            if contact.other is not None:
+                sides.append((-1.0, wholes[contact.other]))
+            speed, gain = _along(sides, contact.place, contact.normal)
+            pushed = max(0.0, contact.pushed - (speed + contact.closing) / gain)
+            _apply(sides, contact.place, (pushed - contact.pushed) * contact.normal)
+            contact.pushed = pushed
+            if contact.friction == 0:
+                continue
+            tangent = quarter_turn(contact.normal)
+            speed, gain = _along(sides, contact.place, tangent)
+            most = contact.friction * pushed
+            rubbed = min(most, max(-most, contact.rubbed - speed / gain))
+            _apply(sides, contact.place, (rubbed - contact.rubbed) * tangent)
+            contact.rubbed = rubbed
+
+
+def _along(
+    sides: Sequence[tuple[float, Whole]], place: Array, direction: Array
+) -> tuple[float, float]:
+    """Relative speed at a contact along a direction, and what a unit impulse adds to it."""
+    speed = sum(sign * float(whole.velocity_at(place) @ direction) for sign, whole in sides)
+    gain = sum(
+        1 / whole.mass + float(cross(place - whole.centre, direction)) ** 2 / whole.inertia
+        for _, whole in sides
+    )
+    return speed, gain
+
+
+def _apply(sides: Sequence[tuple[float, Whole]], place: Array, impulse: Array) -> None:
+    for sign, whole in sides:
+        whole.push(place, sign * impulse)
+
+
+def cross(a: Array, b: Array) -> Array:
+    """z of a x b for vectors (..., 2) in the plane."""
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
+
+
+def quarter_turn(a: Array) -> Array:
+    """z x a for vectors (..., 2) in the plane."""
+    return np.asarray(a[..., ::-1] * _SIGNS)
