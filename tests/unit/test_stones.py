@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from gimpslope.materials import Elastic
 from gimpslope.outline import Outline
@@ -15,6 +16,7 @@ from gimpslope.stones import Ellipse, Stone, Stones, contact
 GRANITE = Elastic(density=2600, young=50e9, poisson=0.25)
 CHALK = Elastic(density=2000, young=5e9, poisson=0.25)
 SLOPE = Outline.slope()
+TRIANGLE = [(0, 0), (1, 0), (0, 1)]
 
 
 def box(x, y, width, height):
@@ -249,6 +251,20 @@ def test_content_by_area_and_by_points():
     )
 
 
+def test_content_is_of_the_union_within_the_outline():
+    slope = box(0, 0, 4, 2)
+    assert Stones([Ellipse((50, 50), (1, 0.5))]).content(slope) == 0
+    assert Stones([box(3, 0, 2, 1)]).content(slope) == pytest.approx(1 / 8)
+    assert Stones([box(0, 0, 2, 1), box(1, 0, 2, 1)]).content(slope) == pytest.approx(3 / 8)
+    assert Stones([box(0, 0, 1, 1)] * 3).content(slope) == pytest.approx(1 / 8)
+    half = Stones([Ellipse((0, 1), (1, 1)), Ellipse((3, 1), (1, 0.5))])
+    area = math.pi / 4 * (0.5 + 0.5)
+    assert half.content(slope) == pytest.approx(area / 8, rel=1e-4)
+    assert half.content(slope) == pytest.approx(half.point_content(slope, 0.005), abs=1e-3)
+    touching = Stones([box(0, 0, 1, 1), box(1, 0, 1, 1), Ellipse((3, 0.5), (1, 1))])
+    assert touching.content(slope) == touching.area / 8
+
+
 def test_sizes_are_diameters_of_circles_of_equal_area():
     stones = Stones([Ellipse((0, 0), (0.54, 0.54)), Ellipse((2, 0), (4, 1)), box(5, 0, 2, 2)])
     np.testing.assert_allclose(stones.sizes, [0.54, 2, 4 / math.sqrt(math.pi)])
@@ -277,6 +293,36 @@ def test_slices_and_sums_are_stones():
     assert hash(stones) == hash(Stones(list(stones)))
 
 
+def test_sums_with_lists_either_way():
+    stones, none, shapes = Stones([box(0, 0, 1, 1)]), [], [Ellipse((3, 0), (1, 1))]
+    assert shapes + stones == Stones([*shapes, *stones])
+    assert stones + shapes == Stones([*stones, *shapes])
+    assert none + stones == stones == stones + none
+    with pytest.raises(TypeError, match=r"^stones must be a sequence of .* got 3"):
+        3 + stones
+
+
+def test_index_arrays_and_masks_choose_stones():
+    stones = Stones.of_ellipses([(0, 0), (2, 0), (4, 0)], [(1, 1), (0.2, 0.2), (2, 2)])
+    assert stones[stones.sizes > 0.5] == stones[[0, 2]] == stones[::2]
+    assert stones[np.array([2, -1, 0])] == Stones([stones[2], stones[2], stones[0]])
+    assert stones[[]] == stones[[False] * 3] == stones[np.array([])] == Stones()
+    assert isinstance(stones[np.argmax(stones.sizes)], Stone)
+    with pytest.raises(IndexError):
+        stones[[True, False]]
+    with pytest.raises(IndexError):
+        stones[[3]]
+
+
+def test_empty_lists_are_no_stones():
+    assert Stones.of_ellipses([], (1, 0.5)) == Stones.of_ellipses([], [], []) == Stones()
+    assert Stones.of_polygons([]) == Stones()
+    none = Stones()
+    assert none.content(SLOPE) == none.point_content(SLOPE, 1) == none.mass() == none.area == 0
+    assert none.margins(SLOPE).shape == none.sizes.shape == none.point_counts(SLOPE, 1).shape
+    assert len(Stones([box(0, 0, 1, 1)]).numbers([])) == 0
+
+
 def test_arrays_spread_over_the_stones():
     stones = Stones.of_ellipses([(0, 0), (2, 0)], [(1, 0.5), (2, 1)], [10, 20])
     assert stones[1] == Stone(Ellipse((2, 0), (2, 1), 20))
@@ -297,7 +343,36 @@ def test_arrays_spread_over_the_stones():
         (lambda: Stones.of_ellipses([(0, 0)], (1, 1), [1, 2]), ValueError, r"^angles .*\(1\), got"),
         (lambda: Stones.of_ellipses([(0, 0)], [(1, 1), 1]), ValueError, r"^axes must .*got"),
         (lambda: Stones.of_ellipses([0, 0], (1, 1)), ValueError, "^centres must .*got"),
-        (lambda: Stones.of_polygons([[(0, 0), (1, 0)]]), ValueError, "^vertices must .*got 2"),
+        (
+            lambda: Stones.of_ellipses([(1, 1), (2, 2)], [(1, -1), (1, 1)]),
+            ValueError,
+            r"^axes\[0\]\[1\] must .*got -1.0",
+        ),
+        (lambda: Stones.of_ellipses([(0, 0)], []), ValueError, r"^axes must .*\(1, 2\), got"),
+        (lambda: Stones.of_polygons(3), TypeError, "^polygons must be a sequence of .*got 3"),
+        (
+            lambda: Stones.of_polygons([[(0, 0), (1, 0)]]),
+            ValueError,
+            r"^polygons\[0\]: vertices must be .*got 2",
+        ),
+        (
+            lambda: Stones.of_polygons([TRIANGLE, [(0, 0), (1, 1), (1, 0), (0, 1)]]),
+            ValueError,
+            r"^polygons\[1\]: vertices must form a simple polygon, got one with Self-inter",
+        ),
+        (
+            lambda: Stones.of_polygons([TRIANGLE, TRIANGLE[0]]),
+            ValueError,
+            r"^polygons\[1\] must be an array of finite numbers of shape \(k, 2\), got .*\(2,\)",
+        ),
+        (lambda: Stones().content("x"), TypeError, "^outline must be an Outline, got 'x'"),
+        (lambda: Stones().outside("x"), TypeError, "^outline must be an Outline, got 'x'"),
+        (lambda: Stones().margins("x"), TypeError, "^outline must be an Outline, got 'x'"),
+        (lambda: Stones().point_content("x", 1), TypeError, "^outline must be an Outline, got"),
+        (lambda: Stones().point_counts("x", 1), TypeError, "^outline must be an Outline, got"),
+        (lambda: Stones().plot(outline="x"), TypeError, "^outline must be an Outline, got"),
+        (lambda: Stones()[[0.5]], TypeError, "^index must be .*got float64 of shape"),
+        (lambda: Stones()[np.zeros((1, 2), int)], TypeError, r"^index must be .*of shape \(1, 2"),
         (lambda: Stones([box(0, 0, 1, 1)]).numbers([0, 1]), ValueError, "^points must be .*got"),
         (lambda: Stones().point_counts(SLOPE, 0), ValueError, "^spacing must be .*got 0"),
     ],
@@ -344,3 +419,21 @@ def test_table_tells_number_area_sizes_and_mass():
     assert "1 without a material" in (stones[:1] + stones[1:].with_material(CHALK))._repr_html_()
     assert repr(stones) == "<Stones: 2 of 1.196 m2, mean size 0.814 m>"
     assert repr(Stones()) == "<Stones: none>" and "svg" not in Stones()._repr_html_()
+
+
+def test_plot_draws_stones_and_outline_to_scale():
+    stones = Stones([Ellipse((1, 2), (2, 1), 30), box(3, 1, 2, 1)])
+    axes = Figure().add_subplot()
+    assert stones.plot(axes, SLOPE) is axes
+    drawn = [path.vertices for path in axes.collections[0].get_paths()]
+    np.testing.assert_allclose(
+        [path.min(axis=0) for path in drawn], [s.shape.bounds[:2] for s in stones], atol=1e-3
+    )
+    np.testing.assert_allclose(
+        [path.max(axis=0) for path in drawn], [s.shape.bounds[2:] for s in stones], atol=1e-3
+    )
+    np.testing.assert_array_equal(axes.patches[0].get_xy()[:4], SLOPE.vertices)
+    assert axes.get_aspect() == 1 and axes.get_xlabel() == "x (m)"
+    alone = stones.plot(Figure().add_subplot())
+    assert not alone.patches and 4.9 < alone.get_xlim()[1] < 5.2
+    assert not Stones().plot(Figure().add_subplot()).patches

@@ -1,5 +1,6 @@
 """Slopes out of label images: regions, content by area and by points, labels, refusals."""
 
+import h5py
 import numpy as np
 import pytest
 import shapely
@@ -301,6 +302,18 @@ def test_refusal_of_files(tmp_path):
     Image.fromarray(SMALL.astype(np.float32)).save(tmp_path / "float.tif")
     with pytest.raises(ValueError, match=r"^image must be a picture .* numbers are not whole"):
         from_image(tmp_path / "float.tif", 0.5)
+    with pytest.raises(FileNotFoundError, match=r"^image must be an existing .*none\.png'$"):
+        from_image(str(tmp_path / "none.png"), 0.5)
+    with pytest.raises(FileNotFoundError, match=r"^image must be an existing file, got '\.'$"):
+        from_image(".", 0.5)
+    h5py.File(tmp_path / "run.h5", "w").close()
+    with pytest.raises(ValueError, match=r"^image must be a picture .*run\.h5': it is no picture"):
+        from_image(tmp_path / "run.h5", 0.5)
+    noise = np.random.default_rng(1).integers(0, 255, (99, 99)).astype(np.uint8)
+    Image.fromarray(noise).save(tmp_path / "cut.png")
+    (tmp_path / "cut.png").write_bytes((tmp_path / "cut.png").read_bytes()[:500])
+    with pytest.raises(ValueError, match=r"^image must be a picture .*cut\.png'"):
+        from_image(tmp_path / "cut.png", 0.5)
     (tmp_path / "text.png").write_text("no picture")
     with pytest.raises(ValueError, match=r"^image must be a picture .* got '.*text\.png'"):
         from_image(tmp_path / "text.png", 0.5)
@@ -315,3 +328,43 @@ def test_a_picture_of_blended_colours_is_refused_unless_its_stones_are_named(tmp
         from_image(tmp_path / "blended.png", 0.5)
     assert len(from_image(tmp_path / "blended.png", 0.5, stones=range(2, 100)).stones) == 98
     assert len(from_image(levels, 0.5).stones) == 98
+
+
+def picture_of(labels):
+    return np.array([COLOURS[label] for label in range(3)], dtype=np.uint8)[labels]
+
+
+def test_noise_is_not_taken_for_stones(tmp_path):
+    labels, pixel = slope_with_discs(220, seed=1)
+    noise = np.random.default_rng(1).integers(0, 2, (*labels.shape, 3))
+    Image.fromarray((picture_of(labels) - noise).astype(np.uint8)).save(tmp_path / "noisy.png")
+    named = {"background": "white", "soil": (139, 90, 43)}
+    with pytest.raises(ValueError, match=r"^stones must be given where .*, got 22 such labels of "):
+        from_image(tmp_path / "noisy.png", pixel, **named)
+    with pytest.raises(ValueError, match=r"got 1 such labels of [\d,]+ pixels, 3 \("):
+        from_image(np.where(noise[..., 0] & noise[..., 1], 3, labels), pixel)
+
+
+@pytest.mark.parametrize("factor", [2, 3, 4])
+def test_smooth_edges_are_not_taken_for_stones(tmp_path, factor):
+    labels, pixel = slope_with_discs(220, seed=1)
+    named = {"background": "white", "soil": (139, 90, 43)}
+    size = tuple(factor * side for side in labels.shape[::-1])
+    for name, method in (("smooth", Image.BILINEAR), ("sharp", Image.NEAREST)):
+        Image.fromarray(picture_of(labels)).resize(size, method).save(tmp_path / f"{name}.png")
+    with pytest.raises(ValueError, match=r"^stones must be given .* \d+ such labels of [\d,]+ pix"):
+        from_image(tmp_path / "smooth.png", pixel / factor, **named)
+    assert len(from_image(tmp_path / "sharp.png", pixel / factor, **named).stones) == 48
+
+
+def test_many_stones_of_one_pixel_have_to_be_named():
+    labels = np.ones((30, 30), dtype=int)
+    labels[1::2, 1::2] = 7
+    with pytest.raises(ValueError, match=r"got 1 such labels of 225 pixels, 7 \(25.00%\); name "):
+        from_image(labels, 0.1, background=None)
+    assert len(from_image(labels, 0.1, background=None, stones=7).stones) == 225
+    larger = np.kron(labels, np.ones((2, 2), dtype=int))
+    assert len(from_image(larger, 0.1, background=None).stones) == 225
+    for row in (labels[1:2], labels[:, 1:2].T):
+        assert len(from_image(row, 0.1, background=None).stones) == 15
+        assert len(from_image(row.T, 0.1, background=None).stones) == 15

@@ -9,7 +9,11 @@ import pytest
 from gimpslope import stones
 from gimpslope.materials import Elastic
 from gimpslope.outline import Outline
-from gimpslope.stones import LogNormal, PowerLaw, StonesDoNotFit, Uniform
+from gimpslope.stones import Ellipse, LogNormal, PowerLaw, Stones, StonesDoNotFit, Uniform
+from gimpslope.stones.drawing import pushing, reach
+from gimpslope.stones.drawing.irregular import outline
+from gimpslope.stones.drawing.room import Room
+from gimpslope.stones.drawing.watch import Watch
 
 SLOPE = Outline.slope()
 NOTCHED = Outline([(0, 0), (9, 0), (9, 2), (4, 2), (3, 5), (2, 2), (0, 8)])
@@ -132,8 +136,9 @@ def test_points_are_met_by_scaling_the_smallest_stones_by_at_most_five_percent(d
 
 
 def test_points_out_of_reach_are_refused():
-    with pytest.raises(ValueError, match=r"points must be within reach .* got \d+ to add"):
-        stones.rounds(SLOPE, 1.0, points=470, spacing=0.05, seed=1)
+    for points in (2, 470):
+        with pytest.raises(ValueError, match=rf"^points must be within reach .* got {points}$"):
+            stones.rounds(SLOPE, 1.0, points=points, spacing=0.05, seed=1)
 
 
 def test_a_list_of_sizes_keeps_its_order():
@@ -198,9 +203,103 @@ def test_what_does_not_fit_ends_in_an_error_that_says_how_far_it_got():
     assert error.content == pytest.approx(error.count * math.pi / 4 * 1.5**2 / SLOPE.area)
     assert error.wanted_content == pytest.approx(0.95, abs=0.02)
     assert error.tries > 100 and error.sweeps > 100
+    assert 0 < error.lack < 1.5 and f"left some {error.lack:.2g} m too near" in str(error)
     assert isinstance(error, ValueError)
     again = pickle.loads(pickle.dumps(error))
-    assert str(again) == str(error) and again.count == error.count
+    assert str(again) == str(error) and again.lack == error.lack
+
+
+def test_it_says_how_near_pushing_came():
+    # 10.5 m upright need 0.85 m more at either end than there is between 0.1 m and 8.9 m.
+    with pytest.raises(StonesDoNotFit) as refusal:
+        stones.ellipses(SLOPE, (10.5, 1), count=1, angle=90, seed=1)
+    assert 0.85 < refusal.value.lack < 2 * 0.85 + 0.3
+    assert refusal.value.needed < 1
+
+
+def test_pushing_that_does_not_get_on_ends_early():
+    with pytest.raises(StonesDoNotFit) as refusal:
+        stones.rounds(SLOPE, 0.54, content=0.6, seed=1)
+    assert 1000 < refusal.value.sweeps < 3000
+
+
+@pytest.mark.parametrize("looks", [20_000, 200_000])
+def test_pushing_ends_after_so_many_looks_at_pairs(monkeypatch, looks):
+    monkeypatch.setattr(pushing, "_MOST_LOOKS", looks)
+    seen = []
+    near = Watch.near
+    monkeypatch.setattr(Watch, "near", lambda watch, at: seen.append(watch) or near(watch, at))
+    with pytest.raises(StonesDoNotFit) as refusal:
+        stones.ellipses(SLOPE, (1.0, 0.05), content=0.3, gap=0.01, seed=1)
+    assert refusal.value.sweeps + 1 == len(seen)
+    assert looks < seen[0].looks < 1.5 * looks
+
+
+def test_a_watch_finds_what_a_new_look_around_finds_without_so_many():
+    rng = np.random.default_rng(1)
+    shapes = [
+        *(Ellipse((0, 0), axes, rng.uniform(0, 180)) for axes in rng.uniform(0.05, 0.9, (80, 2))),
+        *(Outline(0.4 * outline(rng, 6, 0.3, 1.5)) for _ in range(20)),
+    ]
+    room = Room(NOTCHED, np.array([reach.reach(shape) for shape in shapes]), 0.05, 0.02)
+    places = room.random_points(rng, len(shapes))
+    watch, longest = Watch(room, places, 0.05), 0
+    for _ in range(40):
+        old, new = watch.near(places), Watch(room, places, 0.0)
+        for found, expected in zip(old, new.near(places), strict=True):
+            assert len(expected.lack) > 0
+            for part, same in zip(found[:4], expected[:4], strict=True):
+                np.testing.assert_array_equal(part, same)
+        longest += new.looks
+        places = places + rng.uniform(-0.005, 0.005, places.shape)
+    assert watch.looks < longest
+
+
+def test_enough_distance_is_told_roughly_and_less_exactly():
+    rng = np.random.default_rng(2)
+    ellipses = [Ellipse((0, 0), axes, 20) for axes in rng.uniform(0.1, 1, (30, 2))]
+    first, second = rng.integers(0, 30, (2, 500))
+    bodies = np.array([reach.reach(ellipse) for ellipse in ellipses]), first, second
+    offset = rng.uniform(-1, 1, (500, 2))
+    exact, rough = (reach.between(*bodies, offset, enough)[0] for enough in (np.inf, 0.1))
+    near = exact < 0.1
+    np.testing.assert_array_equal(rough[near], exact[near])
+    assert rough[~near].min() >= 0.1 and np.all(rough <= exact) and np.any(rough < exact)
+
+
+def test_stones_too_many_for_their_gap_are_counted_at_random_places():
+    with pytest.raises(StonesDoNotFit, match=r"with their gaps all take 2\.04 times the ") as e:
+        stones.rounds(SLOPE, 0.5, count=40, gap=2, margin=0, seed=1)
+    # Rounds of 2.5 m in the slope grown by 1 m, by Steiner's formula.
+    room = 58.5 + (11 + 9 + 2 + 9 * math.sqrt(2)) + math.pi
+    assert e.value.needed == pytest.approx(40 * math.pi / 4 * 2.5**2 / room, rel=1e-3)
+    assert 4 < e.value.count < 20 and e.value.sweeps == 0 < e.value.tries
+
+
+@pytest.mark.parametrize(("diameter", "margin"), [(0.5, 20), (0.5, 3), (6.5, 0.1)])
+def test_a_margin_that_leaves_no_room_is_named(diameter, margin):
+    with pytest.raises(StonesDoNotFit, match=r"got places for 0 of 4, .* margin leaves no room"):
+        stones.rounds(SLOPE, diameter, count=4, margin=margin, seed=1)
+
+
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda **amount: stones.rounds(SLOPE, 0.5, seed=1, **amount),
+        lambda **amount: stones.rounds(SLOPE, Uniform(0.3, 0.8), seed=1, **amount),
+        lambda **amount: stones.ellipses(SLOPE, (0.5, 0.2), seed=1, **amount),
+        lambda **amount: stones.ellipses(SLOPE, Uniform(0.3, 0.8), aspect=2, seed=1, **amount),
+        lambda **amount: stones.polygons(SLOPE, PowerLaw(2, 0.1, 1), seed=1, **amount),
+    ],
+)
+def test_none_may_be_asked_for(draw):
+    for none in ({"count": 0}, {"content": 0}, {"content": 0.0}, {"points": 0, "spacing": 0.1}):
+        assert draw(**none) == Stones()
+
+
+def test_lists_of_sizes_may_be_empty():
+    assert stones.rounds(SLOPE, [], seed=1) == stones.polygons(SLOPE, [], seed=1) == Stones()
+    assert stones.ellipses(SLOPE, [], angle=[], seed=1) == Stones()
 
 
 @pytest.mark.parametrize(
@@ -225,14 +324,13 @@ def test_stones_without_room_are_refused(draw):
         ({"diameter": 0.0}, ValueError, "^diameter must be .* got 0.0"),
         ({"diameter": "big"}, TypeError, "^diameter must be .* got 'big'"),
         ({"diameter": [0.5, -1], "count": None}, ValueError, r"^diameter\[1\] must .* got -1.0"),
-        ({"diameter": [], "count": None}, ValueError, "^diameter must hold a size, got an empty"),
         ({"diameter": [0.5, 0.6]}, ValueError, "^none of count, .* got {'count': 3}"),
         ({"count": None}, ValueError, "^exactly one of count, content and points .* got none"),
         ({"content": 0.1}, ValueError, "^exactly one of .* got {'count': 3, 'content': 0.1}"),
-        ({"count": 0}, ValueError, "^count must be a whole number >= 1, got 0"),
-        ({"count": 2.0}, TypeError, "^count must be a whole number >= 1, got 2.0"),
+        ({"count": -1}, ValueError, "^count must be a whole number >= 0, got -1"),
+        ({"count": 2.0}, TypeError, "^count must be a whole number >= 0, got 2.0"),
         ({"count": 10**6}, ValueError, "at most 100,000 stones, got 1,000,000"),
-        ({"count": None, "content": 1.0}, ValueError, r"^content must be .*\(0, 1\), got 1.0"),
+        ({"count": None, "content": 1.0}, ValueError, r"^content must be .*\[0, 1\), got 1.0"),
         ({"count": None, "points": 5}, ValueError, "^spacing must be given with points .* None"),
         ({"spacing": 0.1}, ValueError, "^spacing must be given with points and only then, got 0.1"),
         ({"count": None, "points": 5, "spacing": 0}, ValueError, "^spacing must be .* got 0"),
@@ -264,7 +362,8 @@ def test_refusals_of_draws_name_the_parameter(changes, error, text):
         (lambda: ovals(Uniform(1, 2), aspect=0.5), ValueError, "^aspect must be .* got 0.5"),
         (lambda: ovals(Uniform(1, 2), aspect=(3, 2)), ValueError, "^aspect must have the least"),
         (lambda: ovals(Uniform(1, 2), aspect=(1, 2, 3)), ValueError, "^aspect must be a number,"),
-        (lambda: ovals((1, -1)), ValueError, "^axes must be .* got -1.0"),
+        (lambda: ovals((1, -1)), ValueError, r"^axes\[1\] must be .* got -1.0"),
+        (lambda: listed([(1, 1), (-2, 1)]), ValueError, r"^axes\[1\]\[0\] must be .* got -2.0"),
         (lambda: ovals(0.5), ValueError, r"^axes must be .*\(n, 2\), got 0.5"),
         (lambda: ovals((1, 1), angle=[1, 2]), ValueError, r"^angle must be .*\(3\), got"),
         (lambda: stony(corners=2), ValueError, "^corners must be .* got 2"),
@@ -281,6 +380,10 @@ def test_refusals_of_laws_and_shapes_name_the_parameter(draw, error, text):
 
 def ovals(axes, **look):
     return stones.ellipses(SLOPE, axes, count=3, seed=1, **look)
+
+
+def listed(axes):
+    return stones.ellipses(SLOPE, axes, seed=1)
 
 
 def stony(**look):

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from typing import cast, overload
+from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 import numpy.typing as npt
+import shapely
 
 from .. import _check
 from .._check import FloatArray
@@ -16,15 +17,21 @@ from ..materials import Material
 from ..outline import Outline
 from . import contact, neighbours, picture
 from .ellipse import Ellipse
-from .rows import for_each
+from .rows import all_rows, for_each, one_or_all, refuse_not_positive
 from .stone import Shape, Stone
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _SLACK = 1e-6
 
 
 @dataclass(frozen=True, repr=False)
 class Stones(Record, Sequence[Stone]):
-    """Stones, numbered from 0. Slices and sums of them are stones again.
+    """Stones, numbered from 0.
+
+    Slices and sums of them are stones again, and so are those of an index array or a mask:
+    `stones[stones.sizes > 0.5]`.
 
     Parameters
     ----------
@@ -61,7 +68,8 @@ class Stones(Record, Sequence[Stone]):
         angles : from the x axis counterclockwise to the first axis, degrees, for all or (n,)
         material : of all; None: what the scene names for stones that do not say
         """
-        centres = _check.array("centres", centres, ("n", 2))
+        centres = all_rows("centres", centres, (2,))
+        refuse_not_positive("axes", one_or_all("axes", axes, (2,), len(centres)))
         axes = for_each("axes", axes, len(centres), (2,))
         angles = for_each("angles", angles, len(centres), ())
         rows = zip(centres.tolist(), axes.tolist(), angles.tolist(), strict=True)
@@ -73,7 +81,9 @@ class Stones(Record, Sequence[Stone]):
     ) -> Stones:
         """Polygons of corners (k, 2), m, with k >= 3 that may differ between them; `material` as in
         `of_ellipses`."""
-        return cls([Stone(Outline(np.asarray(corners)), material) for corners in polygons])
+        _check.instance("polygons", polygons, Iterable, "a sequence of polygons of corners (k, 2)")
+        outlines = (_outline(f"polygons[{n}]", corners) for n, corners in enumerate(polygons))
+        return cls([Stone(outline, material) for outline in outlines])
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
@@ -126,15 +136,23 @@ class Stones(Record, Sequence[Stone]):
         return Stones([replace(stone, material=material) for stone in self])
 
     def content(self, outline: Outline) -> float:
-        """Their area as a share of that of an outline in which they lie."""
-        return self.area / outline.area
+        """Share of an outline's area that is in stones, as `point_content` has it of points.
+
+        Where they overlap it counts once, outside of the outline not at all. Ellipses that do so
+        count as their polygons, whose areas are 1e-4 smaller.
+        """
+        _slope(outline)
+        crossing = np.union1d(self.overlaps(), self.outside(outline))
+        clear = np.delete(self.areas, crossing).sum()
+        union = shapely.union_all([self[n].shape.polygon for n in crossing.tolist()])
+        return float((clear + union.intersection(outline.polygon).area) / outline.area)
 
     def numbers(self, points: npt.ArrayLike) -> npt.NDArray[np.int32]:
         """Number of the stone that holds each of the points (n, 2), m, or -1 for none, shape (n,).
 
         A point on an edge is inside; one on the edges of two stones is of the later.
         """
-        points = _check.array("points", points, ("n", 2))
+        points = all_rows("points", points, (2,))
         order = np.argsort(points[:, 1], kind="stable")
         rising = points[order]
         numbers = np.full(len(points), -1, dtype=np.int32)
@@ -147,7 +165,7 @@ class Stones(Record, Sequence[Stone]):
 
     def point_counts(self, outline: Outline, spacing: float) -> npt.NDArray[np.int64]:
         """Number of points of each stone in an outline's lattice of a spacing (m), shape (n,)."""
-        numbers = self.numbers(outline.lattice(spacing))
+        numbers = self.numbers(_slope(outline).lattice(spacing))
         return np.bincount(numbers[numbers >= 0], minlength=len(self))
 
     def point_content(self, outline: Outline, spacing: float) -> float:
@@ -155,7 +173,7 @@ class Stones(Record, Sequence[Stone]):
 
         Raises `ValueError` if the lattice has no points.
         """
-        lattice = outline.lattice(spacing)
+        lattice = _slope(outline).lattice(spacing)
         if len(lattice) == 0:
             raise ValueError(f"spacing must put points into the outline, got {spacing}, none")
         return float(np.mean(self.numbers(lattice) >= 0))
@@ -166,7 +184,7 @@ class Stones(Record, Sequence[Stone]):
 
     def outside(self, outline: Outline) -> npt.NDArray[np.int64]:
         """Numbers of the stones that do not lie within an outline, shape (k,)."""
-        return np.flatnonzero(~contact.within(self.shapes, outline))
+        return np.flatnonzero(~contact.within(self.shapes, _slope(outline)))
 
     def gaps(self) -> FloatArray:
         """Distance of each stone from the nearest other, m, shape (n,).
@@ -185,20 +203,35 @@ class Stones(Record, Sequence[Stone]):
             raise ValueError(f"stones must lie within the outline, got {outside.tolist()} outside")
         return contact.edge_distances(self.shapes, outline)
 
+    def plot(self, ax: Axes | None = None, outline: Outline | None = None) -> Axes:
+        """The stones to scale, and the outline of a slope where it is given.
+
+        Drawn into the axes, or into new ones; returns these.
+        """
+        if outline is not None:
+            _slope(outline)
+        return picture.plot(self, ax, outline)
+
     @overload
     def __getitem__(self, index: int) -> Stone: ...
     @overload
-    def __getitem__(self, index: slice) -> Stones: ...
-    def __getitem__(self, index: int | slice) -> Stone | Stones:
+    def __getitem__(self, index: slice | Sequence[int] | npt.NDArray[Any]) -> Stones: ...
+    def __getitem__(self, index: int | slice | Sequence[int] | npt.NDArray[Any]) -> Stone | Stones:
         if isinstance(index, slice):
             return Stones(self._all[index])
-        return self._all[index]
+        if np.ndim(index) == 0:
+            return self._all[cast(int, index)]
+        chosen = np.arange(len(self))[_several(index)]
+        return Stones([self._all[number] for number in chosen.tolist()])
 
     def __len__(self) -> int:
         return len(self.stones)
 
     def __add__(self, other: Sequence[Stone | Shape]) -> Stones:
         return Stones([*self, *Stones(other)])
+
+    def __radd__(self, other: Sequence[Stone | Shape]) -> Stones:
+        return Stones(other) + self
 
     def __repr__(self) -> str:
         return f"<Stones: {picture.in_words(self)}>"
@@ -214,3 +247,25 @@ class Stones(Record, Sequence[Stone]):
 def _stone(name: str, item: Stone | Shape) -> Stone:
     _check.instance(name, item, Stone | Shape, "a Stone, an Outline or an Ellipse")
     return item if isinstance(item, Stone) else Stone(item)
+
+
+def _outline(name: str, corners: npt.ArrayLike) -> Outline:
+    vertices = _check.array(name, corners, ("k", 2))
+    try:
+        return Outline(vertices)
+    except ValueError as error:
+        raise ValueError(f"{name}: {error}") from None
+
+
+def _slope(outline: Outline) -> Outline:
+    return _check.instance("outline", outline, Outline, "an Outline")
+
+
+def _several(index: npt.ArrayLike) -> npt.NDArray[Any]:
+    given = np.asarray(index)
+    if given.ndim != 1 or (given.size and given.dtype.kind not in "bui"):
+        raise TypeError(
+            "index must be a whole number, a slice, some whole numbers or a mask, "
+            f"got {given.dtype} of shape {given.shape}"
+        )
+    return given if given.size else given.astype(np.intp)

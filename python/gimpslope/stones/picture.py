@@ -1,4 +1,4 @@
-"""Stones in a notebook: a small picture beside a table of facts."""
+"""Stones in a notebook: a small picture beside a table of facts, or drawn into axes."""
 
 from __future__ import annotations
 
@@ -13,6 +13,9 @@ from .ellipse import Ellipse
 from .stone import Shape
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..outline import Outline
     from .collection import Stones
 
 _WIDTH, _HEIGHT = 320, 240
@@ -40,6 +43,19 @@ def html(stones: Stones) -> str:
         "<div style='display:flex;flex-wrap:wrap;align-items:center;gap:1.5em'>"
         f"{svg(stones)}{table}</div>"
     )
+
+
+def plot(stones: Stones, ax: Axes | None, outline: Outline | None) -> Axes:
+    """The stones to scale in axes, or in new ones, and an outline around them."""
+    from ..figures import canvas
+
+    ax = canvas.new_axes() if ax is None else ax
+    edges = [np.array(shape.polygon.exterior.coords) for shape in stones.shapes]
+    canvas.draw_stones(ax, edges, _EDGE, halo=False, faces=_FILL)
+    for edge in edges:
+        ax.update_datalim(edge)
+    canvas.draw_outline(ax, None if outline is None else outline.vertices)
+    return ax
 
 
 def svg(stones: Stones) -> str:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 from ... import _check
 from ..._check import FloatArray
 from ...outline import Outline
+from ..rows import all_rows, refuse_not_positive
 from .rounding import rounded
 from .sizes import Law
 
@@ -23,14 +24,14 @@ _MOST_STONES = 100_000
 
 @dataclass(frozen=True)
 class Amount:
-    """What a draw is to meet: exactly one of `count`, `content` and `points`.
+    """What a draw is to meet: exactly one of `count`, `content` and `points`; 0 is no stones.
 
     None of them is given where the sizes are a list.
 
     Parameters
     ----------
     count : number of stones
-    content : share of the outline's area, in (0, 1)
+    content : share of the outline's area, in [0, 1)
     points : number of points in stones, of the outline's lattice of the spacing `spacing` (m)
     """
 
@@ -41,11 +42,11 @@ class Amount:
 
     def __post_init__(self) -> None:
         if self.count is not None:
-            _check.whole("count", self.count, 1)
+            _check.whole("count", self.count, 0)
         if self.content is not None:
-            _check.in_range("content", self.content, 0, 1, "()")
+            _check.in_range("content", self.content, 0, 1, "[)")
         if self.points is not None:
-            _check.whole("points", self.points, 1)
+            _check.whole("points", self.points, 0)
         if self.spacing is not None:
             _check.positive("spacing", self.spacing)
         if (self.points is None) != (self.spacing is None):
@@ -60,18 +61,20 @@ class Amount:
         """Sizes of the stones to draw, diameters of circles of equal area, m, shape (n,).
 
         A list as it is; else a fixed size or draws from a law, the largest first, as many as were
-        asked for or as meet the area most nearly, but at least one.
+        asked for or as meet the area most nearly, but at least one unless none are wanted.
         """
         if not isinstance(size, Law) and np.ndim(size) > 0:
             self._check_given(0, f"with a list as {name}")
-            listed = _check.array(name, size, ("n",))
-            if len(listed) == 0:
-                raise ValueError(f"{name} must hold a size, got an empty list")
-            return np.array([_check.positive(f"{name}[{n}]", one) for n, one in enumerate(listed)])
+            listed = all_rows(name, size, ())
+            refuse_not_positive(name, listed)
+            return listed
         self._check_given(1, f"unless {name} is a list")
+        size = size if isinstance(size, Law) else _check.positive(name, size)
+        if 0 in (self.count, self.content, self.points):
+            return np.empty(0)
         if isinstance(size, Law):
             return rounded(-np.sort(-self._from_law(size, outline, rng)), outline)
-        return self._alike(_check.positive(name, size), outline)
+        return self._alike(size, outline)
 
     def _check_given(self, wanted: int, when: str) -> None:
         given = {name: getattr(self, name) for name in ("count", "content", "points")}

@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from ... import _check
 from ..._check import FloatArray
 from ...materials import Material
 from ...outline import Outline
 from ..collection import Stones
 from ..ellipse import Ellipse
-from ..rows import is_single
+from ..rows import one_or_all, refuse_not_positive
 from . import spread
 from .amount import Amount, Size
 from .layout import Layout
@@ -39,9 +38,10 @@ def ellipses(
 ) -> Stones:
     """Ellipses at random places in an outline.
 
-    How many is said by exactly one of `count`, `content` and `points`, or by a list of axes. The
-    largest are placed first, each at one of some random places. When stones find none free, all are
-    pushed apart until they keep the gap. The same seed gives the same stones on any machine.
+    How many is said by exactly one of `count`, `content` and `points`, or by a list of axes; 0 or
+    an empty list is none. The largest are placed first, each at one of some random places. When
+    stones find none free, all are pushed apart until they keep the gap. The same seed gives the
+    same stones on any machine.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def ellipses(
         diameters of the circles of equal area
     seed : of the random numbers, a whole number >= 0
     count : number of stones
-    content : share of the outline's area, in (0, 1), met as nearly as whole stones can
+    content : share of the outline's area, in [0, 1), met as nearly as whole stones can
     points : number of lattice points in stones, met exactly or within one by scaling the last, the
         smallest stones alike by a factor of 0.95 to 1.05, as few of them as it takes
     spacing : of the lattice, m, > 0; with `points` only
@@ -149,8 +149,8 @@ def _axes(
         return rounded(np.stack([sizes * root, sizes / root], axis=1), layout.outline)
     if aspect is not None:
         raise ValueError(f"aspect must be None where axes is no law of sizes, got {aspect!r}")
-    listed = _check.array("axes", axes, (2,) if is_single(axes, (2,)) else ("n", 2))
-    _check.positive("axes", listed.min(initial=1.0))
+    listed = one_or_all("axes", axes, (2,))
+    refuse_not_positive("axes", listed)
     size = np.sqrt(listed[..., 0] * listed[..., 1])
     n = len(amount.sizes("axes", size, layout.outline, layout.rng))
     return np.broadcast_to(listed, (n, 2))

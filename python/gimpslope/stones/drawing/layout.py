@@ -62,6 +62,8 @@ class Layout:
         ValueError
             `StonesDoNotFit`, or if a number of points is out of reach.
         """
+        if not shapes:
+            return Stones()
         areas = np.array([shape.area for shape in shapes])
         order = np.argsort(-areas, kind="stable")
         reaches = np.array([reach(shape) for shape in shapes])
@@ -73,8 +75,9 @@ class Layout:
         made = [moved(shape, place) for shape, place in zip(shapes, places, strict=True)]
         if amount.points is not None and amount.spacing is not None:
             lattice = self.outline.lattice(amount.spacing)
-            more = amount.points - int((Stones(made).numbers(lattice) >= 0).sum())
-            factors = points.factors([shapes[n] for n in last], places[last], lattice, more)
+            held = int((Stones(made).numbers(lattice) >= 0).sum())
+            scalable = [shapes[n] for n in last]
+            factors = points.factors(scalable, places[last], lattice, held, amount.points)
             for number, factor in zip(last.tolist(), factors, strict=True):
                 made[number] = moved(shapes[number], places[number], factor)
         return self._verified(Stones([Stone(shape, material) for shape in made]))

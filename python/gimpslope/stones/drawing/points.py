@@ -32,9 +32,9 @@ def n_scalable(areas: FloatArray, wanted: int, spacing: float) -> int:
 
 
 def factors(
-    shapes: Sequence[Shape], places: FloatArray, lattice: FloatArray, more: int
+    shapes: Sequence[Shape], places: FloatArray, lattice: FloatArray, held: int, wanted: int
 ) -> FloatArray:
-    """Factors (n,) that put `more` further points (fewer where negative) into stones, but for one.
+    """Factors (n,) that take the points in stones from `held` to `wanted`, but for one.
 
     As few of the stones as it takes, from the first on, have the same factor of 0.95 to 1.05.
 
@@ -49,6 +49,7 @@ def factors(
     ValueError
         If there are no such factors.
     """
+    more = wanted - held
     if more == 0:
         return np.ones(len(shapes))
     inside = [_counter(*stone, lattice) for stone in zip(shapes, places, strict=True)]
@@ -62,8 +63,8 @@ def factors(
             if abs(excess) <= allowed:
                 return np.where(np.arange(len(shapes)) <= last, 1 + step * SCALE / _STEPS, 1.0)
     raise ValueError(
-        f"points must be within reach of scaling the last {len(shapes)} stones by "
-        f"{1 - SCALE} to {1 + SCALE}, which adds {lowest[-1]} to {highest[-1]}, got {more} to add"
+        f"points must be within reach of scaling the last {len(shapes)} stones by {1 - SCALE} to "
+        f"{1 + SCALE}, which gives {held + lowest[-1]} to {held + highest[-1]}, got {wanted}"
     )
 
 

@@ -38,11 +38,12 @@ def reach(shape: Shape) -> FloatArray:
 
 
 def between(
-    reaches: FloatArray, first: Numbers, second: Numbers, offset: FloatArray
+    reaches: FloatArray, first: Numbers, second: Numbers, offset: FloatArray, enough: float
 ) -> tuple[FloatArray, FloatArray]:
     """Distance of bodies, m, shape (m,), and the unit vectors (m, 2) from the first to the second.
 
-    Negative where they overlap: how far to push them apart along the vector.
+    Negative where they overlap: how far to push them apart along the vector. Where it is `enough`,
+    m, it may be told too small, but not below that.
 
     Parameters
     ----------
@@ -51,24 +52,24 @@ def between(
     offset : from the first origin to the second, m, shape (m, 2)
     """
 
-    def apart(columns: Numbers) -> FloatArray:
+    def apart(rows: Numbers, columns: Numbers) -> FloatArray:
         opposite = (columns + _N // 2) % _N
-        along = _along(offset, columns)
-        return along - reaches[first[:, None], columns] - reaches[second[:, None], opposite]
+        reach, other = reaches[first[rows, None], columns], reaches[second[rows, None], opposite]
+        return _along(offset[rows], columns) - reach - other
 
-    return _widest(apart, len(offset))
+    return _widest(apart, len(offset), enough)
 
 
 def to_edges(
-    reaches: FloatArray, number: Numbers, start: FloatArray, end: FloatArray
+    reaches: FloatArray, number: Numbers, start: FloatArray, end: FloatArray, enough: float
 ) -> tuple[FloatArray, FloatArray]:
     """The same for bodies and edges, whose ends (m, 2) are given from the origins of the bodies."""
 
-    def apart(columns: Numbers) -> FloatArray:
-        nearer = np.minimum(_along(start, columns), _along(end, columns))
-        return nearer - reaches[number[:, None], columns]
+    def apart(rows: Numbers, columns: Numbers) -> FloatArray:
+        nearer = np.minimum(_along(start[rows], columns), _along(end[rows], columns))
+        return nearer - reaches[number[rows, None], columns]
 
-    return _widest(apart, len(start))
+    return _widest(apart, len(start), enough)
 
 
 def _along(vector: FloatArray, columns: Numbers) -> FloatArray:
@@ -76,11 +77,18 @@ def _along(vector: FloatArray, columns: Numbers) -> FloatArray:
     return direction[..., 0] * vector[:, :1] + direction[..., 1] * vector[:, 1:]
 
 
-def _widest(apart: Callable[[Numbers], FloatArray], n: int) -> tuple[FloatArray, FloatArray]:
-    """The largest value over every eighth direction, then over those around the best of these."""
+def _widest(
+    apart: Callable[[Numbers, Numbers], FloatArray], n: int, enough: float
+) -> tuple[FloatArray, FloatArray]:
+    """The largest value over every eighth direction and, where that is not yet enough, over those
+    around the best of these."""
     rows = np.arange(n)
-    best = _STRIDE * np.argmax(apart(np.tile(_COARSE, (n, 1))), axis=1)
-    columns = (best[:, np.newaxis] + _FINE) % _N
-    found = apart(columns)
+    found = apart(rows, _COARSE)
     place = np.argmax(found, axis=1)
-    return found[rows, place], DIRECTIONS[columns[rows, place]]
+    widest, best = found[rows, place], _COARSE[place]
+    near = np.flatnonzero(widest < enough)
+    rows, columns = np.arange(len(near)), (best[near, None] + _FINE) % _N
+    found = apart(near, columns)
+    place = np.argmax(found, axis=1)
+    widest[near], best[near] = found[rows, place], columns[rows, place]
+    return widest, DIRECTIONS[best]

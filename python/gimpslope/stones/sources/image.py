@@ -17,6 +17,7 @@ from .regions import regions
 from .section import Polygons, Section, materials_by_group, section
 
 _MOST_COLOURS = 64
+_MOST_SPECKS = 100
 _OFF_THE_EDGE = 1e-4
 
 
@@ -45,7 +46,8 @@ def from_image(
     pixel : side of a pixel, m, > 0
     background : label around the slope; None if there is nothing around it
     soil : label of the soil
-    stones : label or labels of the stones; None: all others, of which a picture may have 64
+    stones : label or labels of the stones; None: all others, of which a picture may have 64, and
+        of which specks and lines one pixel wide may have 100 pixels
     material : of all stones, or by label; stones without one are of what the scene names
 
     Raises
@@ -89,6 +91,7 @@ def _kinds_of_stones(
                 f"image must have at most {_MOST_COLOURS} colours of stones unless `stones` names "
                 f"them, got {len(every)}, {image.shown()}; was it saved with smooth edges or lossy?"
             )
+        _refuse_specks(image, every)
         return every
     _check.instance("stones", stones, str | int | Iterable, "a label, some labels or None")
     kinds: list[int] = []
@@ -103,6 +106,20 @@ def _kinds_of_stones(
     if unnamed := set(every) - set(kinds):
         raise ValueError(f"stones must name all other labels, got none for {image.shown(unnamed)}")
     return kinds
+
+
+def _refuse_specks(image: LabelImage, kinds: list[int]) -> None:
+    """Refuse labels of stones, which nobody named, that come of noise or of smooth edges."""
+    specks = np.array(kinds, dtype=np.intp)[~image.broad[kinds]]
+    pixels = np.count_nonzero(np.isin(image.codes, specks))
+    if pixels > _MOST_SPECKS:
+        raise ValueError(
+            "stones must be given where labels besides background and soil are mostly specks and "
+            f"lines one pixel wide, in more than {_MOST_SPECKS} pixels, got {len(specks)} such "
+            f"labels of {pixels:,} pixels, {image.shown(specks.tolist())}; name them if they are "
+            "stones, else give their pixels the labels around them: was the image saved with "
+            "smooth edges, lossy or with noise?"
+        )
 
 
 def _placed(pieces: Polygons, pixel: float, limits: FloatArray) -> Polygons:

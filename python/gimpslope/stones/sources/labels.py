@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
@@ -51,6 +52,20 @@ class LabelImage:
             )
         return found
 
+    @property
+    def broad(self) -> npt.NDArray[np.bool_]:
+        """Whether most of each label's pixels are in squares of 2 by 2 of them, shape (labels,)."""
+        low, high = self.codes[:-1], self.codes[1:]
+        alike = (low == high)[:, 1:] & (low[:, 1:] == low[:, :-1]) & (high[:, 1:] == high[:, :-1])
+        around = np.pad(alike, 1)
+        within = around[1:, 1:] | around[1:, :-1] | around[:-1, 1:] | around[:-1, :-1]
+        pixels, in_squares = (
+            np.bincount(codes.ravel(), minlength=len(self.names))
+            for codes in (self.codes, self.codes[within])
+        )
+        broad: npt.NDArray[np.bool_] = 2 * in_squares > pixels
+        return broad
+
     def shown(self, codes: Iterable[int] | None = None) -> str:
         """The labels of these numbers, or all, in words: with their shares, the largest first."""
         shares = np.bincount(self.codes.ravel(), minlength=len(self.names)) / self.codes.size
@@ -89,18 +104,24 @@ def _of_numbers(numbers: npt.NDArray[np.generic], *, drawn: bool) -> LabelImage:
 
 
 def _of_file(path: str | PathLike[str]) -> LabelImage:
-    from PIL import Image, UnidentifiedImageError
+    from PIL import Image
 
+    if not Path(path).is_file():
+        raise FileNotFoundError(f"image must be an existing file, got {str(path)!r}")
     try:
         with Image.open(path) as picture:
             return _of_picture(picture)
-    except (UnidentifiedImageError, ValueError) as error:
+    except (OSError, ValueError) as error:
         raise ValueError(
             f"image must be a picture of whole numbers or colours, got {str(path)!r}: {error}"
         ) from None
 
 
 def _of_picture(picture: Image.Image) -> LabelImage:
+    from PIL import ImageFile
+
+    if isinstance(picture, ImageFile.StubImageFile):
+        raise ValueError("it is no picture")
     if picture.mode in _NUMBERED:
         return _of_numbers(np.asarray(picture), drawn=True)
     if picture.mode == "F":
