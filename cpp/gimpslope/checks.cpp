@@ -32,11 +32,12 @@ void check(const InitialPoints& p, const std::vector<Material>& materials,
   const std::string rule = "an index into the " + std::to_string(materials.size()) + " materials";
   for (const int m : p.material)
     require(m >= 0 && static_cast<std::size_t>(m) < materials.size(), "material", m, rule.c_str());
-  require(p.stone.size() == n, "stone", std::to_string(p.stone.size()) + " values",
-          (std::to_string(n) + " values").c_str());
+  require(p.stone.empty() || p.stone.size() == n, "stone",
+          std::to_string(p.stone.size()) + " values", (std::to_string(n) + " values").c_str());
   for (std::size_t k = 0; k < n; ++k)
-    require(materials[p.material[k]].law != LawKind::rigid || p.stone[k] >= 0, "stone", p.stone[k],
-            "the number of a stone where the material is rigid");
+    if (const int number = p.stone.empty() ? -1 : p.stone[k]; number < 0)
+      require(materials[p.material[k]].law != LawKind::rigid, "stone", number,
+              "the number of a stone where the material is rigid");
 }
 
 void check(const Method& m) {

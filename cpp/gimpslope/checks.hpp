@@ -17,7 +17,7 @@ struct InitialPoints {
   std::span<const double> position, velocity, half_length;
   std::span<const double> mass, volume;
   std::span<const std::int32_t> material;
-  std::span<const std::int32_t> stone;  // number of the stone a point is in, or negative
+  std::span<const std::int32_t> stone;  // number of that a point is in, or negative; empty: of none
 };
 
 /// Refuses arrays of the wrong length and values that are not finite or, where asked, not positive.

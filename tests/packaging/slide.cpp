@@ -29,9 +29,9 @@ Solver sliding_block(int threads, InstructionSet set) {
   Method method;
   method.blend.value = 0.01;
   method.threads = threads;
-  Solver solver({position, at_rest, half_lengths, masses, volumes, materials}, {soil}, 2 * spacing,
-                {0.0, 0.0}, {Wall{WallKind::roller}, {}, {WallKind::coulomb, 0.2}, {}}, method,
-                set);
+  Solver solver({position, at_rest, half_lengths, masses, volumes, materials, {}}, {soil},
+                2 * spacing, {0.0, 0.0}, {Wall{WallKind::roller}, {}, {WallKind::coulomb, 0.2}, {}},
+                method, set);
   solver.set_gravity({4.0, -9.81, 0.0});
   return solver;
 }
@@ -45,7 +45,10 @@ int main(int count, char** word) try {
   std::puts(name(solver.instruction_set()));
   for (const char* field : {"position", "velocity", "stress", "volume", "plastic_strain"}) {
     std::printf("%s", field);
-    for (const double value : solver.values(field)) std::printf(" %.17g", value);
+    std::vector<double> values(static_cast<std::size_t>(solver.size()) *
+                               solver.field(field).components);
+    solver.copy_values<double>(field, values);
+    for (const double value : values) std::printf(" %.17g", value);
     std::puts("");
   }
 } catch (const std::exception& refused) {
