@@ -23,7 +23,6 @@ Bodies::Bodies(std::span<const std::int32_t> number_of_point, int threads) : thr
   begin_.push_back(static_cast<std::int32_t>(given_.size()));
   const std::size_t points = given_.size(), bodies = numbers_.size();
   member_.resize(points);
-  volume_.resize(points);
   for (int c = 0; c < 2; ++c) {
     offset_[c].resize(points);
     half_length_[c].resize(points);
@@ -48,7 +47,8 @@ void Bodies::take_shape(const Points& points, double half_length, double cell) {
   if (empty()) return;
   find(points);
   const double* mass = points.mass[0];
-  double widest = 0.0;
+  double largest = 0.0;  // of a body
+  widest_ = 0.0;
   for (std::size_t b = 0; b < states_.size(); ++b) {
     const int begin = begin_[b], end = begin_[b + 1];
     BodyState& state = states_[b];
@@ -57,11 +57,11 @@ void Bodies::take_shape(const Points& points, double half_length, double cell) {
     for (int k = begin; k < end; ++k) {
       const int m = member_[k];
       mass_[b] += mass[m];
-      volume_[k] = points.volume[0][m];
       for (int c = 0; c < 2; ++c) {
         sum[c] += mass[m] * points.position[c][m];
         const double own = points.half_length.empty() ? half_length : points.half_length[c][m];
-        half_length_[c][k] = own > 0.0 ? own : 0.5 * std::sqrt(volume_[k]);
+        widest_ = std::max(widest_, 2.0 * own);
+        half_length_[c][k] = own > 0.0 ? own : 0.5 * std::sqrt(points.volume[0][m]);
       }
     }
     for (int c = 0; c < 2; ++c) state.centre[c] = sum[c] / mass_[b];
@@ -75,10 +75,10 @@ void Bodies::take_shape(const Points& points, double half_length, double cell) {
       inertia_[b] += mass[member_[k]] * (square + own / 3.0);
       radius_[b] = std::max(radius_[b], std::sqrt(square) + std::sqrt(own));
     }
-    widest = std::max(widest, radius_[b]);
+    largest = std::max(largest, radius_[b]);
   }
   // Shape functions reach two cells beyond a domain at most.
-  window_ = 2 * static_cast<int>(std::ceil(widest / cell)) + 6;
+  window_ = 2 * static_cast<int>(std::ceil(largest / cell)) + 6;
   nodes_.resize(states_.size() * window_ * window_);
   shares_.resize(static_cast<std::size_t>(threads_) * window_ * window_);
 }
@@ -130,22 +130,27 @@ void Bodies::reset_impulses() {
     state.impulse[0] = state.impulse[1] = state.angular_impulse = 0.0;
 }
 
-Energies Bodies::energies(double gravity_x, double gravity_y) const {
-  Energies sum;
+double Bodies::kinetic_energy() const {
+  double sum = 0.0;
   for (std::size_t b = 0; b < states_.size(); ++b) {
     const BodyState& s = states_[b];
     const double square = s.velocity[0] * s.velocity[0] + s.velocity[1] * s.velocity[1];
-    sum.kinetic += 0.5 * (mass_[b] * square + inertia_[b] * s.spin * s.spin);
-    sum.potential -= mass_[b] * (gravity_x * s.centre[0] + gravity_y * s.centre[1]);
-    const double cosine = std::cos(s.angle), sine = std::sin(s.angle);
-    for (int k = begin_[b]; k < begin_[b + 1]; ++k) {
-      const double x = cosine * offset_[0][k] - sine * offset_[1][k];
-      const double y = sine * offset_[0][k] + cosine * offset_[1][k];
-      sum.max_speed = std::max(sum.max_speed,
-                               std::hypot(s.velocity[0] - s.spin * y, s.velocity[1] + s.spin * x));
-    }
+    sum += 0.5 * (mass_[b] * square + inertia_[b] * s.spin * s.spin);
   }
   return sum;
+}
+
+double Bodies::potential_energy(double gravity_x, double gravity_y) const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < states_.size(); ++b)
+    sum -= mass_[b] * (gravity_x * states_[b].centre[0] + gravity_y * states_[b].centre[1]);
+  return sum;
+}
+
+double Bodies::largest_speed(const Points& points) const {
+  double square = 0.0;
+  for (const int m : member_) square = std::max(square, squared_speed(points, m));
+  return std::sqrt(square);
 }
 
 BodiesView Bodies::view(const Points& points, std::size_t nodes) {
@@ -155,7 +160,6 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes) {
           begin_.data(),
           member_.data(),
           {offset_[0].data(), offset_[1].data()},
-          volume_.data(),
           {half_length_[0].data(), half_length_[1].data()},
           mass_.data(),
           inertia_.data(),
@@ -170,18 +174,12 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes) {
           owner_.data(),
           contacts_.data(),
           static_cast<int>(contacts_.size()),
-          &contact_count_};
-}
-
-double Bodies::widest() const {
-  double widest = 0.0;
-  for (const auto& lengths : half_length_)
-    for (const double length : lengths) widest = std::max(widest, 2.0 * length);
-  return widest;
+          &contact_count_,
+          &contacts_missed_};
 }
 
 std::int64_t Bodies::bytes() const {
-  return sizeof(double) * (5 * given_.size() + shares_.size()) + sizeof(BodyNode) * nodes_.size() +
+  return sizeof(double) * (4 * given_.size() + shares_.size()) + sizeof(BodyNode) * nodes_.size() +
          sizeof(std::int32_t) * (2 * given_.size() + owner_.size());
 }
 

@@ -39,13 +39,17 @@ class Bodies {
 
   void reset_impulses();
 
-  /// Kinetic and potential energy of all, J/m, and the speed of their fastest point, m/s.
-  Energies energies(double gravity_x, double gravity_y) const;
+  double kinetic_energy() const;                                      // J/m
+  double potential_energy(double gravity_x, double gravity_y) const;  // J/m
+  double largest_speed(const Points& points) const;                   // of a point, m/s
 
   /// What the sweeps see, for points as they lie in storage and a grid of so many nodes.
   BodiesView view(const Points& points, std::size_t nodes);
 
-  double widest() const;  // domain of a point, which all keep, m
+  double widest() const { return widest_; }  // domain of a point, which all keep, m
+
+  /// Whether bodies have met in more places than there is room for.
+  bool contacts_missed() const { return contacts_missed_; }
 
   std::int64_t bytes() const;
 
@@ -57,7 +61,6 @@ class Bodies {
   std::vector<std::int32_t> given_;   // points in the order they came in,
   std::vector<std::int32_t> member_;  // and where they are in storage
   std::array<std::vector<double>, 2> offset_, half_length_;
-  std::vector<double> volume_;
   std::vector<double> mass_, inertia_, radius_;
   std::vector<BodyState> states_;
   std::vector<BodyReport> reports_;
@@ -67,6 +70,8 @@ class Bodies {
   std::vector<double> shares_;
   std::vector<Contact> contacts_;
   int contact_count_ = 0, window_ = 0, threads_ = 1;
+  bool contacts_missed_ = false;
+  double widest_ = 0.0;
 };
 
 }  // namespace gimpslope

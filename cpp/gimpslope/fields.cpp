@@ -40,16 +40,15 @@ Energies Solver::gather_energies() const {
     sum.elastic += report.energies.elastic;
     sum.max_speed = std::max(sum.max_speed, report.energies.max_speed);
   }
-  const Energies bodies = bodies_.energies(gravity_.x, gravity_.y);
-  sum.kinetic += bodies.kinetic;
-  sum.potential += bodies.potential;
-  sum.max_speed = std::max(std::sqrt(sum.max_speed), bodies.max_speed);
+  sum.kinetic += bodies_.kinetic_energy();
+  sum.potential += bodies_.potential_energy(gravity_.x, gravity_.y);
+  sum.max_speed = std::max(std::sqrt(sum.max_speed), bodies_.largest_speed(points_));
   return sum;
 }
 
 double Solver::kinetic_energy() const {
   const Points& p = points();
-  double sum = bodies_.energies(0.0, 0.0).kinetic;
+  double sum = bodies_.kinetic_energy();
   for (int k = 0; k < p.size; ++k)
     if (laws_[p.material[k]].kind != LawKind::rigid)
       sum += 0.5 * p.mass[0][k] * squared_speed(p, k);

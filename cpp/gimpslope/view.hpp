@@ -124,9 +124,9 @@ struct Contact {
 struct BodiesView {
   int count;
   const std::int32_t* begin;
-  const std::int32_t* member;                         // storage index of a point
-  const double *offset[2], *volume, *half_length[2];  // from the centre at angle 0, m; m2; m
-  const double *mass, *inertia, *radius;              // of a body: kg/m; kg m; m
+  const std::int32_t* member;                // storage index of a point
+  const double *offset[2], *half_length[2];  // from the centre at angle 0, m; m
+  const double *mass, *inertia, *radius;     // of a body: kg/m; kg m; m
   BodyState* state;
   BodyReport* reports;
   HeldBody* held;
@@ -138,6 +138,7 @@ struct BodiesView {
   Contact* contacts;
   int contact_room;
   int* contact_count;
+  bool* contacts_missed;  // for want of room
 };
 
 /// What a step works on. The points are kept in double or single precision; the grid, and all

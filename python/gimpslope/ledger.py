@@ -36,7 +36,7 @@ class Ledger(NamedTuple):
     hypoelastic : taken by the rate form of the elastic law, which stores energy a volume while
         volumes change; of either sign, and small where elastic strains are
     integration : residue of the finite time step; it swings at first order in the step
-    rigidity : kinetic energy that the points of rigid stones lose as they move as one
+    rigidity : lost where rigid stones meet the soil that they hold, walls, and each other
     """
 
     plastic: float

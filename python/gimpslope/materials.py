@@ -183,10 +183,11 @@ class DruckerPrager(Deformable):
 class Rigid(Material):
     """A material of stones that do not deform: each moves as one.
 
-    A stone's momentum and angular momentum are those that its points take from the grid; the
-    velocity and spin that follow are those of all its points, which keep their places in it. No
-    wave runs in it, so that the other materials set the time step alone. Of stones only, and in
-    double precision only.
+    A stone has a velocity field of its own. It holds the nodes of the grid in it and up to about
+    half a cell around it: soil sticks to it there, and its momentum and angular momentum take up
+    what the soil gives them. Walls push it with their friction, other rigid stones without. No wave
+    runs in it, so that the other materials set the time step alone. Of stones only, and in double
+    precision only.
 
     Parameters
     ----------

@@ -48,7 +48,7 @@ class Method(Record):
         "cell_average", with the mean stress in the forces to match: the mean dilatation of B-bar
         (Hughes 1980), against locking where the volume hardly changes, as in undrained clay. Not
         for large elastic motions: a point that crosses into another cell meets another mean stress.
-        The mean is over all materials in the cell
+        The mean is over all deformable materials in the cell
     precision : in which the points are stepped: "double", or "single", where places count from a
         node near each point, and the grid and all that is computed on the way stays in double.
         Their state is given out in double and kept beside. "single" tells what the digits are

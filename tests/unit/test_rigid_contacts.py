@@ -140,7 +140,11 @@ def test_stones_that_meet_do_not_pass_through_each_other(aside: float) -> None:
     assert pair.ledger.taken == pytest.approx(energy - pair.energies().kinetic, rel=1e-10)
 
 
-@pytest.mark.xfail(strict=True, reason="together they never fill a cell, by which they would meet")
+@pytest.mark.xfail(
+    strict=True,
+    reason="known limit, in the README: stones meet where they fill a cell, which two smaller than "
+    "one never do",
+)
 def test_small_stones_that_meet_do_not_pass_through_each_other() -> None:
     """Disks of half a cell in radius, which fill half of a cell at most."""
     radius = 0.5 * CELL
@@ -152,7 +156,10 @@ def test_small_stones_that_meet_do_not_pass_through_each_other() -> None:
     assert bodies(pair).centre[0, 0] < bodies(pair).centre[1, 0]
 
 
-@pytest.mark.xfail(strict=True, reason="their normal is the line between their centres, not theirs")
+@pytest.mark.xfail(
+    strict=True,
+    reason="known limit, in the README: rigid stones push each other along the line of centres",
+)
 def test_block_rests_on_a_block_a_quarter_aside() -> None:
     """Flat on flat, with its centre above the other one: there is nothing to push it aside."""
     below = rectangle(0.4, 0.4, SPACING)

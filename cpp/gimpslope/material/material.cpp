@@ -105,4 +105,13 @@ Law law(const Material& m) {
   return result;
 }
 
+std::vector<Law> laws_of(const std::vector<Material>& materials) {
+  std::vector<Law> laws;
+  for (const Material& material : materials) {
+    material.check();
+    laws.push_back(law(material));
+  }
+  return laws;
+}
+
 }  // namespace gimpslope

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <vector>
 
 #include "drucker_prager.hpp"
 #include "elastic.hpp"
@@ -53,6 +54,9 @@ struct Law {
 };
 
 Law law(const Material& material);
+
+/// The laws of materials, which are checked first.
+std::vector<Law> laws_of(const std::vector<Material>& materials);
 
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 

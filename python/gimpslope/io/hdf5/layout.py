@@ -53,7 +53,7 @@ LEDGER = {
     "external": Quantity("f8", (), "J/m", "work of body forces and of the ramp of gravity"),
     "hypoelastic": Quantity("f8", (), "J/m", "taken by the rate form of the elastic law"),
     "integration": Quantity("f8", (), "J/m", "residue of the finite time step"),
-    "rigidity": Quantity("f8", (), "J/m", "lost by the points of rigid stones that move as one"),
+    "rigidity": Quantity("f8", (), "J/m", "lost where rigid stones meet soil, walls, each other"),
 }
 
 RIGID_STONES = "rigid_stones"

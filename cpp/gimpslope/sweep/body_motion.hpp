@@ -1,0 +1,209 @@
+// How a rigid body moves: what it takes up with the nodes it holds, and what it hands on to its
+// points and theirs.
+#pragma once
+
+#include <cmath>
+
+#include "../travel.hpp"
+#include "accounts.hpp"
+#include "nodes.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Velocity of the place at an arm from the centre of a moving body.
+inline Pair velocity_at(const double* velocity, double spin, const double* arm) {
+  return {velocity[0] - spin * arm[1], velocity[1] + spin * arm[0]};
+}
+
+inline double cross(const double* arm, const Pair& v) { return arm[0] * v[1] - arm[1] * v[0]; }
+
+inline void set(double* two, const Pair& value) {
+  two[0] = value[0];
+  two[1] = value[1];
+}
+
+inline NodeStep step_of(const BodyNode& node) {
+  NodeStep s;
+  s.mass = node.mass;
+  s.inverse_mass = 1.0 / node.mass;
+  s.internal = Pair(node.internal[0], node.internal[1]);
+  s.weight = Pair(node.weight[0], node.weight[1]);
+  s.body = Pair(node.body[0], node.body[1]);
+  s.damping = Pair(node.damping[0], node.damping[1]);
+  s.full_weight = Pair(node.full_weight[0], node.full_weight[1]);
+  s.raw = Pair(node.raw[0], node.raw[1]);
+  s.before = Pair(node.before[0], node.before[1]);
+  return s;
+}
+
+/// Sum of the body forces of a body's points, and their moment about its centre, per metre.
+struct BodyForce {
+  double force[2] = {}, moment = 0.0;
+};
+
+inline BodyForce body_force_on(const View<double>& view, int body) {
+  const BodiesView& all = *view.bodies;
+  const PointsView<double>& p = view.points;
+  BodyForce sum;
+  if (p.body_force[0] == nullptr) return sum;
+  for (int k = all.begin[body]; k < all.begin[body + 1]; ++k) {
+    const int m = all.member[k];
+    const double arm[2] = {p.x[m] - all.state[body].centre[0], p.y[m] - all.state[body].centre[1]};
+    const Pair force = p.mass[m] * Pair(p.body_force[0][m], p.body_force[1][m]);
+    for (int c = 0; c < 2; ++c) sum.force[c] += force[c];
+    sum.moment += cross(arm, force);
+  }
+  return sum;
+}
+
+/// A body and its nodes as one rigid body that has their momentum after the forces.
+inline void take_forces(const View<double>& view, const StepInput& input, int body) {
+  const BodiesView& all = *view.bodies;
+  const BodyState& state = all.state[body];
+  BodyNode* nodes = all.nodes + static_cast<std::ptrdiff_t>(body) * all.window * all.window;
+  double mass = all.mass[body], inertia = all.inertia[body], centre[2] = {};
+  double momentum[2] = {mass * state.velocity[0], mass * state.velocity[1]};
+  double turn = inertia * state.spin;  // angular momentum about the centre of the body alone
+  const BodyForce given = body_force_on(view, body);
+  double force[2] = {}, moment = given.moment;
+  for (int c = 0; c < 2; ++c)
+    force[c] = given.force[c] + mass * (c == 0 ? input.gravity_x : input.gravity_y);
+  for (int k = 0; k < all.reaches[body]; ++k) {
+    BodyNode& node = nodes[k];
+    const NodeStep s = forces_on(view.grid, node.node, input);
+    node.mass = s.mass;
+    set(node.internal, s.internal);
+    set(node.weight, s.weight);
+    set(node.body, s.body);
+    set(node.damping, s.damping);
+    set(node.full_weight, s.full_weight);
+    set(node.raw, s.raw);
+    set(node.before, s.before);
+    const Pair pull = s.total() - s.damping, brought = s.mass * s.raw;
+    mass += s.mass;
+    inertia += s.mass * (node.arm[0] * node.arm[0] + node.arm[1] * node.arm[1]);
+    for (int c = 0; c < 2; ++c) {
+      centre[c] += s.mass * node.arm[c];
+      momentum[c] += brought[c];
+      force[c] += pull[c];
+    }
+    turn += cross(node.arm, brought);
+    moment += cross(node.arm, pull);
+  }
+  // Local damping is of the whole, which has come to rest when its forces cancel.
+  HeldBody& held = all.held[body];
+  const auto against = [&](double forcing, double motion) {
+    return -input.local_damping * std::fabs(forcing) * ((motion > 0.0) - (motion < 0.0));
+  };
+  for (int c = 0; c < 2; ++c) {
+    held.damping[c] = against(force[c], state.velocity[c]);
+    momentum[c] += input.dt * (force[c] + held.damping[c]);
+  }
+  held.damping_moment = against(moment, state.spin);
+  turn += input.dt * (moment + held.damping_moment);
+  held.mass = mass;
+  for (int c = 0; c < 2; ++c) {
+    held.centre[c] = centre[c] / mass;
+    held.velocity[c] = momentum[c] / mass;
+  }
+  held.inertia =
+      inertia - mass * (held.centre[0] * held.centre[0] + held.centre[1] * held.centre[1]);
+  held.spin = (turn - cross(held.centre, Pair(momentum[0], momentum[1]))) / held.inertia;
+}
+
+/// What held nodes do to their points, and the ledger of the body and its nodes: see ledger.hpp.
+inline void release_nodes(const View<double>& view, const StepInput& input, int body,
+                          Ledger& ledger) {
+  const BodiesView& all = *view.bodies;
+  const HeldBody& held = all.held[body];
+  const BodyNode* nodes = all.nodes + static_cast<std::ptrdiff_t>(body) * all.window * all.window;
+  for (int k = 0; k < all.reaches[body]; ++k) {
+    const BodyNode& node = nodes[k];
+    const double arm[2] = {node.arm[0] - held.centre[0], node.arm[1] - held.centre[1]};
+    NodeStep s = step_of(node);
+    const Pair held_velocity = velocity_at(held.velocity, held.spin, arm);
+    const Pair moved = input.dt * held_velocity;
+    const Pair gained = held_velocity - (1.0 - input.alpha) * s.raw;
+    quad(view.grid.update + 4 * node.node) = Quad{moved[0], moved[1], gained[0], gained[1]};
+    if (view.ledger == nullptr) continue;
+    Ledger free;  // as it was booked
+    s.after = s.raw + input.dt * s.inverse_mass * s.total();
+    add_node(s, input.dt, free);
+    ledger.damping -= free.damping;
+    ledger.external -= free.external;
+    ledger.integration -= free.integration;
+    ledger.transfer -= free.transfer;
+    s.damping = Pair::Zero();
+    s.after = held_velocity;
+    add_node(s, input.dt, ledger);
+    for (int c = 0; c < 2; ++c)
+      ledger.rigidity += taken_by_walls(s, input.dt, c) +
+                         0.5 * s.mass * (s.raw[c] - s.before[c]) * (s.raw[c] + s.before[c]);
+  }
+}
+
+/// New motion and place of a body and its points.
+inline void move_body(const View<double>& view, const StepInput& input, int body) {
+  const BodiesView& all = *view.bodies;
+  const PointsView<double>& p = view.points;
+  const HeldBody& held = all.held[body];
+  BodyState& state = all.state[body];
+  BodyReport report;
+  release_nodes(view, input, body, report.ledger);
+
+  const double mass = all.mass[body], inertia = all.inertia[body];
+  const double to_centre[2] = {-held.centre[0], -held.centre[1]};
+  const Pair velocity = velocity_at(held.velocity, held.spin, to_centre);
+  const Pair before(state.velocity[0], state.velocity[1]);
+  const Pair gravity(input.gravity_x, input.gravity_y);
+  const Pair full_gravity(input.full_gravity_x, input.full_gravity_y);
+  const Pair moved = input.dt * velocity;
+  const BodyForce given = body_force_on(view, body);
+  const auto work_of = [&](const double* force, double moment) {
+    return force[0] * moved[0] + force[1] * moved[1] + moment * input.dt * held.spin;
+  };
+  const double work = work_of(given.force, given.moment);
+  const double damped = work_of(held.damping, held.damping_moment);
+  const Pair impulse = mass * (velocity - before - input.dt * gravity);
+  for (int c = 0; c < 2; ++c) {
+    state.impulse[c] += impulse[c];
+    state.centre[c] += moved[c];
+    state.velocity[c] = velocity[c];
+  }
+  state.angular_impulse += inertia * (held.spin - state.spin);
+  // All that the body gains but by gravity and body forces is taken from its surroundings.
+  const double gain = 0.5 * mass * ((velocity - before) * (velocity + before)).sum() +
+                      0.5 * inertia * (held.spin - state.spin) * (held.spin + state.spin) -
+                      mass * (gravity * moved).sum() - work - damped;
+  report.ledger.damping -= damped;
+  report.ledger.rigidity -= gain;
+  report.ledger.external += work + mass * ((gravity - full_gravity) * moved).sum();
+  state.spin = held.spin;
+  state.angle += input.dt * held.spin;
+
+  const double cosine = std::cos(state.angle), sine = std::sin(state.angle);
+  double fastest = 0.0;
+  for (int k = all.begin[body]; k < all.begin[body + 1]; ++k) {
+    const int m = all.member[k];
+    const double ox = all.offset[0][k], oy = all.offset[1][k];
+    const double arm[2] = {cosine * ox - sine * oy, sine * ox + cosine * oy};
+    const double x = state.centre[0] + arm[0], y = state.centre[1] + arm[1];
+    const double dx = std::fabs(x - p.x[m]), dy = std::fabs(y - p.y[m]);
+    const double farther = dx > dy ? dx : dy;
+    report.travel = farther > report.travel ? farther : report.travel;
+    if (!(farther <= kFarthestStep * view.grid.cell)) report.lost = m;
+    const Pair v = velocity_at(state.velocity, state.spin, arm);
+    const double square = v.square().sum();
+    fastest = square > fastest ? square : fastest;
+    p.x[m] = x;
+    p.y[m] = y;
+    p.vx[m] = v[0];
+    p.vy[m] = v[1];
+  }
+  report.speed = std::sqrt(fastest);
+  all.reports[body] = report;
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

@@ -1,0 +1,157 @@
+// Where rigid bodies meet walls and each other, and the impulses that keep them from running into
+// what they meet: by sequential iteration (Catto 2005, Iterative dynamics with temporal coherence),
+// along walls with their friction, between bodies without.
+#pragma once
+
+#include <cmath>
+
+#include "../view.hpp"
+#include "body_motion.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+constexpr int kContactSweeps = 30;
+
+/// Adds a contact of two bodies at a node where they overlap, or to one that there is.
+inline void add_overlap(const BodiesView& all, int a, const BodyNode& of_a, int b,
+                        const BodyNode& of_b) {
+  int k = 0;
+  while (k < *all.contact_count && !(all.contacts[k].body == a && all.contacts[k].other == b)) ++k;
+  if (k == all.contact_room) {
+    *all.contacts_missed = true;
+    return;
+  }
+  Contact& contact = all.contacts[k];
+  if (k == *all.contact_count) {
+    ++*all.contact_count;
+    contact = {};
+    contact.body = a;
+    contact.other = b;
+  }
+  const double weight = of_a.share * of_b.share;
+  contact.weight += weight;
+  for (int c = 0; c < 2; ++c) contact.place[c] += weight * (all.state[a].centre[c] + of_a.arm[c]);
+}
+
+/// Places and normals of the contacts of bodies with each other: along the line of their centres.
+inline void finish_overlaps(const BodiesView& all) {
+  for (int k = 0; k < *all.contact_count; ++k) {
+    Contact& contact = all.contacts[k];
+    const double *a = all.state[contact.body].centre, *b = all.state[contact.other].centre;
+    const double between = std::hypot(a[0] - b[0], a[1] - b[1]);
+    for (int c = 0; c < 2; ++c) {
+      contact.place[c] /= contact.weight;
+      contact.normal[c] = between > 0.0 ? (a[c] - b[c]) / between : 0.0;
+    }
+  }
+}
+
+/// Contacts of a body with a wall: its nearest place to either side of its centre, so that it can
+/// neither run into it nor turn into it.
+inline void add_wall_contacts(const View<double>& view, const StepInput& input, int body,
+                              Side side) {
+  const BodiesView& all = *view.bodies;
+  const GridView& g = view.grid;
+  if (g.kind[side] == WallKind::free) return;
+  const bool level = side == Side::bottom || side == Side::top;
+  const int axis = level ? 1 : 0;
+  const double outward = side == Side::right || side == Side::top ? 1.0 : -1.0;
+  const double wall = (level ? g.bottom : g.left) + g.wall[side] * g.cell;
+  const BodyState& state = all.state[body];
+  const double away = outward * (wall - state.centre[axis]);
+  if (away - all.radius[body] > g.cell) return;
+  const double cosine = std::cos(state.angle), sine = std::sin(state.angle);
+  constexpr double kSpread = 1e-3;  // of two places as near the one farther out counts
+  double nearest[2] = {2.0 * g.cell, 2.0 * g.cell}, gaps[2] = {}, arms[2][2] = {};
+  for (int k = all.begin[body]; k < all.begin[body + 1]; ++k) {
+    const double ox = all.offset[0][k], oy = all.offset[1][k];
+    double arm[2] = {cosine * ox - sine * oy, sine * ox + cosine * oy};
+    const double side_ways = arm[1 - axis] > 0.0 ? 1.0 : -1.0;
+    arm[axis] += outward * all.half_length[axis][k];
+    arm[1 - axis] += side_ways * all.half_length[1 - axis][k];
+    const double gap = away - outward * arm[axis], along = arm[1 - axis];
+    const int half = along > 0.0;
+    const double rank = gap - kSpread * std::fabs(along);
+    if (rank >= nearest[half]) continue;
+    nearest[half] = rank;
+    gaps[half] = gap;
+    arms[half][0] = arm[0];
+    arms[half][1] = arm[1];
+  }
+  for (int half = 0; half < 2; ++half) {
+    if (nearest[half] >= 2.0 * g.cell) continue;
+    if (*all.contact_count == all.contact_room) {
+      *all.contacts_missed = true;
+      continue;
+    }
+    Contact& contact = all.contacts[(*all.contact_count)++];
+    contact = {};
+    contact.body = body;
+    contact.other = -1;
+    contact.normal[axis] = -outward;
+    for (int c = 0; c < 2; ++c) contact.place[c] = state.centre[c] + arms[half][c];
+    contact.closing = gaps[half] > 0.0 ? gaps[half] / input.dt : 0.0;  // not thrown out of it
+    contact.friction = g.kind[side] == WallKind::fixed ? 1e300 : g.friction[side];
+  }
+}
+
+/// An impulse on a body at an arm from the centre of it and its nodes.
+inline void push(HeldBody& body, const double* arm, const Pair& impulse) {
+  for (int c = 0; c < 2; ++c) body.velocity[c] += impulse[c] / body.mass;
+  body.spin += cross(arm, impulse) / body.inertia;
+}
+
+/// Impulses at contacts, by which no body runs into what it touches.
+inline void resolve_contacts(const View<double>& view, const StepInput& input) {
+  const BodiesView& all = *view.bodies;
+  for (int body = 0; body < all.count; ++body)
+    for (const Side side : {Side::left, Side::right, Side::bottom, Side::top})
+      add_wall_contacts(view, input, body, side);
+  for (int sweep = 0; sweep < kContactSweeps; ++sweep) {
+    for (int k = 0; k < *all.contact_count; ++k) {
+      Contact& contact = all.contacts[k];
+      HeldBody* bodies[2] = {&all.held[contact.body],
+                             contact.other < 0 ? nullptr : &all.held[contact.other]};
+      const double* places[2] = {all.state[contact.body].centre,
+                                 contact.other < 0 ? nullptr : all.state[contact.other].centre};
+      double arm[2][2] = {};
+      for (int side = 0; side < 2 && bodies[side] != nullptr; ++side)
+        for (int c = 0; c < 2; ++c)
+          arm[side][c] = contact.place[c] - places[side][c] - bodies[side]->centre[c];
+      const auto along = [&](const Pair& direction) {  // speed, and what a unit impulse adds to it
+        double speed = 0.0, gain = 0.0;
+        for (int side = 0; side < 2 && bodies[side] != nullptr; ++side) {
+          const HeldBody& b = *bodies[side];
+          const double moment = cross(arm[side], direction);
+          const Pair v = velocity_at(b.velocity, b.spin, arm[side]);
+          speed += (side == 0 ? 1.0 : -1.0) * (v * direction).sum();
+          gain += 1.0 / b.mass + moment * moment / b.inertia;
+        }
+        return Pair(speed, gain);
+      };
+      const auto apply = [&](const Pair& impulse) {
+        push(*bodies[0], arm[0], impulse);
+        if (bodies[1] != nullptr) push(*bodies[1], arm[1], -impulse);
+      };
+      const Pair normal(contact.normal[0], contact.normal[1]);
+      const Pair tangent(-normal[1], normal[0]);
+      const Pair closing = along(normal);
+      const double pushed = contact.pushed - (closing[0] + contact.closing) / closing[1];
+      const double whole = pushed > 0.0 ? pushed : 0.0;
+      apply((whole - contact.pushed) * normal);
+      contact.pushed = whole;
+      if (contact.friction == 0.0) continue;
+      const Pair sliding = along(tangent);
+      const double most = contact.friction * contact.pushed;
+      double rubbed = contact.rubbed - sliding[0] / sliding[1];
+      if (contact.pushed == 0.0) rubbed = 0.0;
+      rubbed = rubbed > most ? most : (rubbed < -most ? -most : rubbed);
+      apply((rubbed - contact.rubbed) * tangent);
+      contact.rubbed = rubbed;
+    }
+  }
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope
