@@ -82,11 +82,11 @@ def _interrupts() -> Iterator[list[int]]:
 def _start(planned: Planned) -> BaseProcess:
     """A process in which Ctrl-C waits until it can answer it."""
     process = multiprocessing.get_context("spawn").Process(target=_run, args=(planned,))
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         process.start()
     finally:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
     return process
 
 
