@@ -96,11 +96,13 @@ def test_initial_slopes_are_the_points_and_stones_of_the_scene(runs: dict[str, R
 
 
 def test_kinetic_energy_of_all(runs: dict[str, Run]) -> None:
-    whole, close = study.kinetic_energy(runs, PAPER).axes
+    figure = study.kinetic_energy(runs, PAPER)
+    whole, close = figure.axes
     assert whole.get_xlim()[1] >= synthetic.END and close.get_xlim() == (0.0, 5.0)
     marks = [line.get_xdata()[0] for line in close.lines if line.get_marker() == "^"]
     assert marks == [1.6, 2.0]
-    texts = [text.get_text() for text in close.get_legend().get_texts()]
+    (legend,) = figure.legends
+    texts = [text.get_text() for text in legend.get_texts()]
     assert texts == ["A soil", "B arbitrary", "peak", "time of the paper's peak"]
 
 

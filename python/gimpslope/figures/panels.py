@@ -20,6 +20,7 @@ from .quantity import KIND, Quantity
 
 WIDTH = 10.0  # inches
 _MARGIN = 0.2  # m
+_TICKS = 5  # steps along x at most, so that the labels of neighbours keep apart
 _BESIDE = 1.3  # inches of the width that labels take
 _ABOVE = 0.45  # inches of the height of each row that its titles and labels take
 _BELOW = 1.1  # inches of the height that the colour bar takes
@@ -54,6 +55,7 @@ def panels(runs: Mapping[str, Run], columns: Sequence[Column]) -> Figure:
                 f"{label}   {_when(run, column.moment, state)}", loc="left", fontsize="medium"
             )
             ax.set(xlim=frame.x[number], ylim=frame.y)
+            ax.locator_params(axis="x", nbins=_TICKS)
             ax.label_outer()
         axes[row][0].set_ylabel(f"{name}\ny (m)")
     _explain(axes, runs, columns, norms)

@@ -53,13 +53,17 @@ def kinetic_energy(runs: Mapping[str, Run], paper: Paper | None = None) -> Figur
     """Figure 4: kinetic energies, (a) over the whole time and (b) over the first five seconds."""
     _refuse_none(runs)
     energies = {name: run.energy for name, run in runs.items()}
-    figure = Figure(figsize=(WIDTH, 0.42 * WIDTH), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 0.45 * WIDTH), layout="constrained")
     whole, close = figure.subplots(1, 2, sharey=True)
     kinetic_energies(energies, whole, reference=paper)
     kinetic_energies(energies, close, until=_CLOSE_UP, reference=paper)
     whole.set_title("(a)", loc="left", fontsize="medium")
     close.set_title("(b)", loc="left", fontsize="medium")
-    whole.get_legend().remove()
+    legend = whole.get_legend()
+    texts = [text.get_text() for text in legend.texts]
+    figure.legend(legend.legend_handles, texts, loc="outside lower center", ncols=len(texts))
+    for ax in (whole, close):
+        ax.get_legend().remove()
     close.label_outer()
     return figure
 
