@@ -128,6 +128,7 @@ void Solver::choose_kernel() {
 
 void Solver::advance(std::int64_t steps) {
   require(steps >= 0, "steps", steps, "zero or positive");
+  forget_margins();
   for (std::int64_t k = 0; k < steps; ++k) {
     const double dt = time_step();
     step(dt, dt);
@@ -137,6 +138,7 @@ void Solver::advance(std::int64_t steps) {
 
 bool Solver::advance_to(double time, std::int64_t most) {
   require(std::isfinite(time), "time", time, "finite, in s");
+  forget_margins();
   constexpr double rounding = 1e-6;  // of a step
   for (std::int64_t k = 0; time_ < time; ++k) {
     const double dt = time_step(), left = time - time_;
@@ -166,6 +168,10 @@ bool Solver::advance_through(std::span<const double> times, std::int64_t most,
   return true;
 }
 
+/// How far blocks are from yield is not known any more: there are others, or stresses and materials
+/// may have been set.
+void Solver::forget_margins() { margins_.assign(layout_.blocks.size(), 0.0); }
+
 /// Calls act(kernel, view) for the precision in which the points are stepped.
 template <class Act>
 void Solver::with_kernel(Act act) {
@@ -181,6 +187,7 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
   return {points,
           grid_.view(),
           layout_.blocks.data(),
+          margins_.data(),
           layout_.slabs.data(),
           static_cast<int>(layout_.slabs.size()),
           layout_.shares.data(),
@@ -210,6 +217,7 @@ void Solver::prepare() {
     }
     stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
+    forget_margins();
     if (method_.ledger) ledger_rows_.resize(grid_.rows());
     if (!bodies_.empty()) {
       const GridView grid = grid_.view();
@@ -395,7 +403,7 @@ int Solver::fastest_point() const {
 
 std::int64_t Solver::bytes() const {
   return points_.bytes() + bodies_.bytes() + (single_ ? single_->bytes() : 0) + grid_.bytes() +
-         layout_.blocks.capacity() * sizeof(Block);
+         layout_.blocks.capacity() * (sizeof(Block) + sizeof(double));
 }
 
 /// The points as they are now.

@@ -148,6 +148,7 @@ struct View {
   PointsView<Real> points;
   GridView grid;
   const Block* blocks;
+  double* margins;  // of each block, see sweep/yielding.hpp
   const Slab* slabs;
   int slab_count;
   const std::int32_t* shares;  // slabs [shares[t], shares[t + 1]) are those of thread t

@@ -13,10 +13,12 @@ namespace gimpslope {
 struct DruckerPrager {
   Elastic elastic;
   double eta;
-  double k;          // xi c, Pa
-  double flow;       // K etabar / (G + K eta etabar): mean stress lost per unit of overshoot
-  double tension;    // largest mean stress, Pa
-  double per_shear;  // 1 / (sqrt(3) G): equivalent plastic strain per sqrt(J2) returned
+  double k;           // xi c, Pa
+  double flow;        // K etabar / (G + K eta etabar): mean stress lost per unit of overshoot
+  double tension;     // largest mean stress, Pa
+  double per_shear;   // 1 / (sqrt(3) G): equivalent plastic strain per sqrt(J2) returned
+  double per_strain;  // 2 G + max(eta, 1) K: what a strain |xx| + |yy| + |xy| of 1 can at most add
+                      // to sqrt(J2) + eta p and to p, Pa
 };
 
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -42,9 +44,10 @@ inline void return_to_surface(const DruckerPrager& law, Stress& s, double& plast
 
   constexpr double tiny = 1e-300;  // keeps 0 / 0 from a stress without deviator
   const double scale = root_j2 / (trial > tiny ? trial : tiny);
-  s.xx = mean + scale * xx;
-  s.yy = mean + scale * yy;
-  s.zz = mean + scale * zz;
+  const bool yields = overshoot > 0.0 || trial_mean > law.tension;
+  s.xx = yields ? mean + scale * xx : s.xx;  // which rounding would change otherwise
+  s.yy = yields ? mean + scale * yy : s.yy;
+  s.zz = yields ? mean + scale * zz : s.zz;
   s.xy *= scale;
   plastic_strain += law.per_shear * (trial - root_j2);
 }

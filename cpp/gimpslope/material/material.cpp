@@ -102,6 +102,7 @@ Law law(const Material& m) {
   constants.flow = bulk * cone.dilation / (shear + bulk * cone.friction * cone.dilation);
   constants.tension = tension_limit(m);
   constants.per_shear = 1.0 / (std::sqrt(3.0) * shear);
+  constants.per_strain = 2.0 * shear + std::max(constants.eta, 1.0) * bulk;
   return result;
 }
 

@@ -9,15 +9,10 @@
 #include "gather.hpp"
 #include "scatter.hpp"
 #include "weights.hpp"
+#include "yielding.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
-
-/// Strain increments and rotations of the points of a block.
-struct Strains {
-  alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
-  double turn[kBlock], cosine[kBlock], sine[kBlock];  // of twice the angle
-};
 
 /// h times the velocity gradient of the points of a block.
 struct Gradient {
@@ -101,6 +96,21 @@ void update_stress(const View<Real>& view, int begin, int n, const Constants& la
   }
 }
 
+/// Stress after the step by the law of a block, or by its elastic part where no point can yield:
+/// with the same bits.
+template <class Real>
+void apply_law(const View<Real>& view, const Block& block, const Law& law, const Strains& strains) {
+  const int begin = block.begin, n = block.end - block.begin;
+  const DruckerPrager& plastic = law.drucker_prager;
+  double& margin = view.margins[&block - view.blocks];
+  if (law.kind != LawKind::drucker_prager || !may_yield(plastic, n, strains, margin)) {
+    update_stress(view, begin, n, plastic.elastic, strains);
+    return;
+  }
+  update_stress(view, begin, n, plastic, strains);
+  if (margin == kUnknown) margin = yield_margin(plastic, view.points, begin, n);
+}
+
 template <class Real>
 void point_forces(const View<Real>& view, int begin, int n, PointForces& forces) {
   const PointsView<Real>& p = view.points;
@@ -128,8 +138,7 @@ void deform_block(const View<Real>& view, const StepInput& input, const Block& b
   if (view.points.deformation[0] != nullptr) update_deformation(view, begin, n, gradient, input.dt);
   update_volume(view, begin, n, input.dt, gradient, strains);
   rotation(n, strains.turn, strains.cosine, strains.sine);
-  with_constants(law,
-                 [&](const auto& constants) { update_stress(view, begin, n, constants, strains); });
+  apply_law(view, block, law, strains);
   if (view.ledger != nullptr)
     add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);
 }

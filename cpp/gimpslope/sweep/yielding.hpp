@@ -1,0 +1,62 @@
+// Which blocks are asked whether they yield. How far the stresses of a block are from yield is
+// measured once; from then on each step takes off what its strains can have changed at most, and
+// while something is left no point can yield, so that the elastic part of the law is all of it.
+#pragma once
+
+#include <cmath>
+
+#include "../view.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Margins, Pa: positive where known, of the point of a block that is nearest to yield.
+constexpr double kUnknown = 0.0;
+constexpr double kAlwaysAsked = -1.0;  // a point yields, or nearly
+
+/// Share of its stresses and strength within which a point counts as yielding: more than rounding
+/// adds up to in single precision between two sorts.
+constexpr double kNearlyYields = 1e-5;
+
+/// Strain increments and rotations of the points of a block.
+struct Strains {
+  alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
+  double turn[kBlock], cosine[kBlock], sine[kBlock];  // of twice the angle
+};
+
+/// Takes the strains of n points off the margin of their block; whether they may yield.
+inline bool may_yield(const DruckerPrager& law, int n, const Strains& s, double& margin) {
+  if (margin <= 0.0) return true;
+  double largest = 0.0;
+#pragma omp simd reduction(max : largest)
+  for (int k = 0; k < n; ++k) {
+    const double size = std::fabs(s.xx[k]) + std::fabs(s.yy[k]) + std::fabs(s.xy[k]);
+    largest = size > largest ? size : largest;
+  }
+  const double left = margin - law.per_strain * largest;
+  margin = left > 0.0 ? left : kUnknown;
+  return margin == kUnknown;
+}
+
+/// The margin of n points from `begin` on.
+template <class Real>
+double yield_margin(const DruckerPrager& law, const PointsView<Real>& p, int begin, int n) {
+  const Real *xx = p.stress_xx + begin, *yy = p.stress_yy + begin;
+  const Real *zz = p.stress_zz + begin, *xy = p.stress_xy + begin;
+  double least = law.tension;
+#pragma omp simd reduction(min : least)
+  for (int k = 0; k < n; ++k) {
+    const double mean = (xx[k] + yy[k] + zz[k]) * (1.0 / 3.0);
+    const double a = xx[k] - mean, b = yy[k] - mean, c = zz[k] - mean;
+    const double root_j2 = std::sqrt(0.5 * (a * a + b * b + c * c) + xy[k] * xy[k]);
+    const double near = kNearlyYields * (root_j2 + std::fabs(mean) + law.k);
+    const double below_cone = law.k - law.eta * mean - root_j2 - near;
+    const double below_tension = law.tension - mean - near;
+    const double margin = below_cone < below_tension ? below_cone : below_tension;
+    least = margin < least ? margin : least;
+  }
+  return least > 0.0 ? least : kAlwaysAsked;
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope
