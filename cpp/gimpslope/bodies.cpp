@@ -147,6 +147,13 @@ double Bodies::potential_energy(double gravity_x, double gravity_y) const {
   return sum;
 }
 
+double Bodies::momentum() const {
+  double sum = 0.0;
+  for (std::size_t b = 0; b < states_.size(); ++b)
+    sum += mass_[b] * std::hypot(states_[b].velocity[0], states_[b].velocity[1]);
+  return sum;
+}
+
 double Bodies::largest_speed(const Points& points) const {
   double square = 0.0;
   for (const int m : member_) square = std::max(square, squared_speed(points, m));

@@ -41,6 +41,7 @@ class Bodies {
 
   double kinetic_energy() const;                                      // J/m
   double potential_energy(double gravity_x, double gravity_y) const;  // J/m
+  double momentum() const;                                            // sum of sizes, N s/m
   double largest_speed(const Points& points) const;                   // of a point, m/s
 
   /// What the sweeps see, for points as they lie in storage and a grid of so many nodes.

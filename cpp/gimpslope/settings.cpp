@@ -1,6 +1,7 @@
 // What can be set between the steps of a solver, and what of it is refused.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -23,6 +24,17 @@ void Solver::set_damping(const Damping& damping) {
   require(damping.local >= 0.0 && damping.local < 1.0, "local", damping.local, "in [0, 1)");
   damping_ = damping;
   last_kinetic_ = 0.0;
+  stopped_ = false;
+  unbalanced_force_ = std::numeric_limits<double>::infinity();
+}
+
+void Solver::stop() {
+  ledger_.damping += kinetic_energy();
+  points().velocity.fill(0.0);
+  bodies_.stop();
+  single_loaded_ = false;
+  last_kinetic_ = 0.0;
+  nodes_ready_ = speeds_known_ = energies_known_ = false;
 }
 
 void Solver::set_time_step(const TimeStep& step) {

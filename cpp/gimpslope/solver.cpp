@@ -265,6 +265,7 @@ void Solver::step(double dt, double whole, bool wants_energies) {
   with_kernel(
       [&](const auto& kernel, const auto& view) { kernel.step(view, input, reports_.data()); });
   single_ahead_ = single_ != nullptr;
+  if (std::exchange(stopped_, false)) unbalanced_force_ = force_from_rest(dt);
 
   Report all;
   for (const Report& report : reports_) {
@@ -355,12 +356,21 @@ void Solver::damp_at_peak() {
     last_kinetic_ = kinetic;
     return;
   }
-  points().velocity.fill(0.0);
-  bodies_.stop();
-  single_loaded_ = false;
-  ledger_.damping += kinetic;
-  last_kinetic_ = 0.0;
-  nodes_ready_ = speeds_known_ = energies_known_ = false;
+  stop();
+  stopped_ = true;
+}
+
+/// After a step of dt from rest: what the forces made of it, a reaction of the walls included. The
+/// step has moved the nodes' mass by next to nothing.
+double Solver::force_from_rest(double dt) {
+  const GridView g = grid_.view();
+  double sum = 0.0;
+  for (int row = 0; row < g.rows; ++row)
+    for (int i = g.active[row].begin; i < g.active[row].end; ++i) {
+      const std::ptrdiff_t node = 4 * (static_cast<std::ptrdiff_t>(row) * g.stride + i);
+      sum += g.momentum[node] * std::hypot(g.update[node], g.update[node + 1]) / (dt * dt);
+    }
+  return sum + bodies_.momentum() / dt;
 }
 
 double Solver::time_step() {

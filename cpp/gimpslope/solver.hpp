@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -59,6 +60,7 @@ class Solver {
 
   void set_gravity(const Gravity& gravity);
   void set_damping(const Damping& damping);
+  void stop();  // ends all motion, which counts as damping
   void set_time_step(const TimeStep& step);
   void set_materials(std::vector<Material> materials);
 
@@ -70,6 +72,10 @@ class Solver {
 
   Energies energies();
   Ledger ledger() const;  // of a method that keeps one
+
+  /// Forces that were left when kinetic damping last stopped all motion: the sum of their sizes at
+  /// the nodes and on rigid bodies, N/m. Infinite before that.
+  double unbalanced_force() const { return unbalanced_force_; }
 
   /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,
   /// body_force, half_length, and deformation_gradient (xx, xy, yx, yy) where the method keeps it.
@@ -119,6 +125,7 @@ class Solver {
   void follow_width(double width);
   void keep_body_forces();
   void damp_at_peak();
+  double force_from_rest(double dt);
   void check_step(const TimeStep& step, const std::vector<Material>& materials) const;
   double stable_time_step_of(const std::vector<Material>& materials) const;
   double alpha_of(double dt) const;
@@ -164,6 +171,8 @@ class Solver {
   std::string failure_;          // why no step can follow
   std::int64_t steps_ = 0;
   double last_kinetic_ = 0.0;
+  bool stopped_ = false;  // by kinetic damping, after the last step
+  double unbalanced_force_ = std::numeric_limits<double>::infinity();
   double travel_ = 0.0;  // since the last sort, at most, cells
   int steps_since_sort_ = 0;
   bool sorted_ = false;

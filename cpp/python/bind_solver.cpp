@@ -261,6 +261,7 @@ void bind_solver(py::module_& m) {
           [](Guarded& s, std::vector<Material> given) { s.get().set_materials(std::move(given)); },
           py::arg("materials"))
       .def("release_stress", read(&Solver::release_stress))
+      .def("stop", read(&Solver::stop))
       .def("reset_clock", read(&Solver::reset_clock))
       .def("energies", [](Guarded& s) { return by_name(s.get().energies(), kEnergies); })
       .def("ledger", [](Guarded& s) { return by_name(s.get().ledger(), kLedger); })
@@ -306,6 +307,7 @@ void bind_solver(py::module_& m) {
                              [](Guarded& s) { return name(s.get().instruction_set()); })
       .def_property_readonly("time_step", read(&Solver::time_step))
       .def_property_readonly("stable_time_step", read(&Solver::stable_time_step))
+      .def_property_readonly("unbalanced_force", read(&Solver::unbalanced_force))
       .def_property_readonly("alpha", read(&Solver::alpha))
       .def_property_readonly("bytes", read(&Solver::bytes))
       .def_property_readonly("seconds", [](Guarded& s) {

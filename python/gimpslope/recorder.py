@@ -131,12 +131,10 @@ class Recorder:
         self._show()
         return {name: column[-1] for name, column in columns.items()}
 
-    def release(self, energy: float, settling_time: float, settling_ratio: float) -> None:
+    def release(self, energy: float, **settling: float) -> None:
         """Record the trigger: the points now are the reference of all displacements."""
         self._write_points()
-        self._writer.write_trigger(
-            energy_released=energy, settling_time=settling_time, settling_ratio=settling_ratio
-        )
+        self._writer.write_trigger(energy_released=energy, **settling)
 
     def _row(self) -> None:
         """A row of the present state."""

@@ -78,7 +78,8 @@ class RunFile:
 
     @property
     def trigger(self) -> dict[str, float]:
-        """energy_released (J/m), settling_time (s), settling_ratio; empty before the trigger."""
+        """energy_released (J/m), settling_time (s), settling_ratio (kinetic over potential energy)
+        and settling_unbalanced (forces over weight); empty before the trigger."""
         return hdf5.read_trigger(self.path)
 
     @property

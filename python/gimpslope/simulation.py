@@ -12,11 +12,14 @@ from .materials import Deformable
 from .method import Method
 from .recorder import Recorder
 from .recording import Recording
+from .rest import Rest
 from .run import Run
 from .scene import Scene
 from .setup import Setup
 from .solver import Solver
 from .stages import Stages
+
+_LARGEST_SHARE = 0.5
 
 
 class NotSettledError(RuntimeError):
@@ -95,9 +98,11 @@ class Simulation:
 
     def load(self, recorder: Recorder) -> None:
         """Gravity grows linearly; all materials are elastic."""
-        ramp = self.stages.gravity.ramp
+        ramp, settling = self.stages.gravity.ramp, self.stages.settling
+        if settling.courant is not None:
+            self.solver.set_step("courant", self._with_blend(settling.courant))
         self.solver.set_gravity(0.0, -self.scene.gravity, ramp)
-        self.solver.set_damping(*self.stages.settling.to_core())
+        self.solver.set_damping(*settling.to_core())
         recorder.start("gravity", ramp)
         while self.solver.time < ramp:
             recorder.advance(ramp)
@@ -105,28 +110,32 @@ class Simulation:
     def settle(self, recorder: Recorder) -> None:
         """Damping brings the slope to rest.
 
-        At rest means that the kinetic energy has stayed below its share of the potential energy for
-        as long as a pressure wave needs to cross the scene twice: at a single moment it may be zero
-        in full swing. The potential energy is that of the start, above the bottom of the outline.
+        With a ratio the kinetic energy must stay below its share of the potential energy for as
+        long as a pressure wave needs to cross the scene twice: at a single moment it may be zero in
+        full swing. The potential energy is that of the start, above the bottom of the outline.
         """
         settling = self.stages.settling
         start = self.solver.time
-        window = self._crossing_time()
+        window = self._crossing_time() if settling.ratio is not None else 0.0
         potential = self._first_potential()
         recorder.start("settling", settling.limit)
+        if settling.unbalanced is not None:  # what was left while gravity grew does not count
+            self.solver.set_damping(*settling.to_core())
         calm_since, ratio = start, math.inf
-        while self.solver.time - calm_since < window:
+        while self.solver.time - calm_since < window or not self._balanced():
             if self.solver.time - start >= settling.limit:
-                raise NotSettledError(
-                    f"not at rest after settling for limit = {settling.limit} s: kinetic over "
-                    f"potential energy, {ratio:.3g} now, has not stayed below ratio = "
-                    f"{settling.ratio} for {window:.3g} s, in which a wave crosses the scene twice"
-                )
+                raise NotSettledError(self._unrest(ratio, window))
             row = recorder.advance(math.inf, rows=1)
             ratio = row["kinetic"] / potential
-            if ratio > settling.ratio:
+            if settling.ratio is not None and ratio > settling.ratio:
                 calm_since = self.solver.time
-        self.settling_time, self.settling_ratio = self.solver.time - start, ratio
+        self.settling = {
+            "settling_time": self.solver.time - start,
+            "settling_ratio": ratio,
+            "settling_unbalanced": self._unbalanced(),
+        }
+        if settling.unbalanced is not None:
+            self.solver.stop()
 
     def release(self, recorder: Recorder) -> None:
         """Strength takes its true value; stresses beyond it return at once; the clock starts."""
@@ -135,24 +144,54 @@ class Simulation:
         solver.set_gravity(0.0, -self.scene.gravity)
         solver.reset_clock()
         solver.set_materials(self.scene.materials)
+        if self.stages.settling.courant is not None:
+            solver.set_step(*self.setup.method.step)
         released = solver.release_stress()
-        recorder.release(released, self.settling_time, self.settling_ratio)
+        recorder.release(released, **self.settling)
 
     def slide(self, recorder: Recorder) -> None:
         """The slope slides, for its duration or until it rests."""
         slide = self.stages.slide
         recorder.start("slide", slide.duration)
-        peak = calm_since = 0.0
-        rows = 1 if slide.rest_ratio > 0 else None
+        rest = Rest(slide, lambda: self.solver.position) if slide.rest_ratio > 0 else None
         while self.solver.time < slide.duration:
-            row = recorder.advance(slide.duration, rows=rows)
-            peak = max(peak, row["kinetic"])
-            if not slide.rests(row["kinetic"], peak, row["max_speed"]):
-                calm_since = self.solver.time
-            elif self.solver.time - calm_since >= slide.rest_time:
+            row = recorder.advance(slide.duration, rows=None if rest is None else 1)
+            if rest is not None and rest.reached(row):
                 recorder.detail = f"at rest after {self.solver.time:.6g} s"
                 return
         recorder.detail = f"slid for {self.solver.time:.6g} s"
+
+    def _with_blend(self, courant: float) -> float:
+        """The Courant number, or a smaller one at which the next step has half a share of PIC."""
+        solver = self.solver
+        kind, value = self.setup.method.blend
+        if kind == "alpha" or value == 0:  # it does not grow with the step
+            return courant
+        longest = _LARGEST_SHARE / solver.alpha * solver.time_step
+        return min(courant, longest / solver.stable_time_step)
+
+    def _unbalanced(self) -> float:
+        weight = float(self.scene.gravity * self.scene.points.mass.sum())
+        return self.solver.unbalanced_force / weight
+
+    def _balanced(self) -> bool:
+        wanted = self.stages.settling.unbalanced
+        return wanted is None or self._unbalanced() < wanted
+
+    def _unrest(self, ratio: float, window: float) -> str:
+        settling = self.stages.settling
+        what = []
+        if settling.ratio is not None:
+            what.append(
+                f"kinetic over potential energy, {ratio:.3g} now, has not stayed below ratio = "
+                f"{settling.ratio} for {window:.3g} s, in which a wave crosses the scene twice"
+            )
+        if settling.unbalanced is not None:
+            what.append(
+                f"unbalanced forces over weight, {self._unbalanced():.3g} now, must be below "
+                f"unbalanced = {settling.unbalanced}"
+            )
+        return f"not at rest after settling for limit = {settling.limit} s: {'; '.join(what)}"
 
     def _crossing_time(self) -> float:
         left, bottom, right, top = self.scene.outline.bounds

@@ -190,6 +190,15 @@ class Solver:
         has passed a peak."""
         self._core.set_damping(_check.finite("local", local), _check.flag("kinetic", kinetic))
 
+    def set_step(self, kind: str, value: float) -> None:
+        """The time step from now on, as `Method.step` has it: "courant" and a number, or "fixed"
+        and s. Refuses what a method refuses."""
+        self._core.set_time_step(kind, _check.finite("value", value))
+
+    def stop(self) -> None:
+        """Set all velocities to zero; the ledger books it as damping."""
+        self._core.stop()
+
     def set_materials(self, materials: Sequence[Material]) -> None:
         """Replace the materials, one for each of before; the stresses stay as they are."""
         self._core.set_materials(_to_core(materials))
@@ -354,6 +363,12 @@ class Solver:
     def alpha(self) -> float:
         """Share of PIC in the next step."""
         return self._core.alpha
+
+    @property
+    def unbalanced_force(self) -> float:
+        """The sum of the sizes of the forces, those of walls included, that were left at the nodes
+        and on rigid stones when kinetic damping last stopped all motion, N/m; infinite before."""
+        return self._core.unbalanced_force
 
     @property
     def threads(self) -> int:

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _READABLE = {
     "points": "{:,}",
     "steps": "{:,}",
+    "steps_before_slide": "{:,}",
     "stones": "{:,}",
     "smallest_gap_in_cells": "{:.2f}",
     "peak_kinetic_energy": "{:,.0f} J/m",
@@ -42,16 +43,19 @@ _AT_PEAK = ("time_of_peak", "speed_at_peak")
 def summarise(run: Run) -> dict[str, float | int | None]:
     """The main results of a run from the data written so far, in SI units.
 
-    Keys: points, steps (of all stages), stones, smallest_gap_in_cells (between two stones; those
-    closer than two cells share nodes), peak_kinetic_energy (J/m, the largest so far), time_of_peak,
-    speed_at_peak (of the fastest point then; both None while the kinetic energy still grows),
-    max_speed, max_displacement_total, _horizontal and _vertical, toe (largest x of a point in the
-    end), final_kinetic_energy (J/m), simulated_time (of the slide), wall_seconds (spent stepping)
-    and point_steps_per_second. What the run has not reached, or not recorded, is None.
+    Keys: points, steps (of all stages), steps_before_slide (of gravity and settling), stones,
+    smallest_gap_in_cells (between two stones; those closer than two cells share nodes),
+    peak_kinetic_energy (J/m, the largest so far), time_of_peak, speed_at_peak (of the fastest point
+    then; both None while the kinetic energy still grows), max_speed, max_displacement_total,
+    _horizontal and _vertical, toe (largest x of a point in the end), final_kinetic_energy (J/m),
+    simulated_time (of the slide), wall_seconds (spent stepping) and point_steps_per_second. What
+    the run has not reached, or not recorded, is None.
     """
+    rows = hdf5.read_energy(run.path)
     return {
         "points": len(hdf5.read_points(run.path).get("mass", ())),
-        "steps": _steps(hdf5.read_energy(run.path)["step"]),
+        "steps": _steps(rows["step"]),
+        "steps_before_slide": _steps(rows["step"][rows["stage"] < hdf5.STAGES.index("slide")]),
         "stones": len(run.scene.stones),
         "smallest_gap_in_cells": _smallest_gap(run.scene),
         **_energy_summary(run.energy),

@@ -115,7 +115,9 @@ def write_run(path: Path, *, until: float = END, finished: bool = True) -> Run:
     writer = new_writer(path)
     writer.append_energy(energy_rows(0, np.arange(0, 0.5, 0.1)))
     writer.append_energy(energy_rows(1, np.arange(0, 0.3, 0.1)))
-    writer.write_trigger(energy_released=12.5, settling_time=0.2, settling_ratio=1e-7)
+    writer.write_trigger(
+        energy_released=12.5, settling_time=0.2, settling_ratio=1e-7, settling_unbalanced=1e-4
+    )
     write_points(writer)
     writer.append_energy(energy_rows(2, np.arange(0, until + 1e-9, ENERGY_INTERVAL)))
     for time in np.arange(0, until + 1e-9, SNAPSHOT_INTERVAL):

@@ -92,6 +92,7 @@ def test_values_come_back_in_the_given_order(path: Path) -> None:
         "energy_released": 12.5,
         "settling_time": 0.2,
         "settling_ratio": 1e-7,
+        "settling_unbalanced": 1e-4,
     }
 
 
@@ -233,7 +234,9 @@ def _states_on_disk(writer: hdf5.RunWriter) -> list[bytes]:
             writer.append_energy(synthetic.energy_rows(2, times))
             writer.append_snapshot(times[0], synthetic.fields(times[0]))
             writer.flush()
-        writer.write_trigger(energy_released=1.0, settling_time=2.0, settling_ratio=3.0)
+        writer.write_trigger(
+            energy_released=1.0, settling_time=2.0, settling_ratio=3.0, settling_unbalanced=4.0
+        )
         writer.write_final(3.0, synthetic.fields(3.0))
         writer.write_timing(1.0, 2)
         writer.finish("finished", "done", {})

@@ -193,6 +193,7 @@ def test_summary(run: Run) -> None:
     expected = {
         "points": synthetic.SCENE.n_points,
         "steps": 400 + 200 + 4000,
+        "steps_before_slide": 400 + 200,
         "stones": 1,
         "peak_kinetic_energy": synthetic.kinetic(2.0),
         "time_of_peak": 2.0,

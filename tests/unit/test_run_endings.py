@@ -105,12 +105,30 @@ def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
     assert len(run.energy) == 1 and run.times.tolist() == [0.0]
 
 
+SLOW = """
+cell = 0.2
+[outline]
+height = 9
+[materials.soil]
+density = 1800
+young = 30e6
+poisson = 0.33
+friction = 22
+cohesion = 1e3
+[stages.gravity]
+ramp = 1000
+"""
+
+
 @contextmanager
 def command(path: Path) -> Iterator[subprocess.Popen[bytes]]:
     """A run by the command line that would last for minutes."""
-    words = ["run", "soil", "--cell", "0.1", "--output", str(path), "--quiet"]
-    if path.stem == "slide":
-        words += ["--cell", "0.2", "--duration", "1000"]
+    words = ["run", "soil", "--cell", "0.2", "--duration", "1000"]
+    if path.stem == "gravity":
+        scene = path.with_suffix(".toml")
+        scene.write_text(SLOW)
+        words = ["run", str(scene)]
+    words += ["--output", str(path), "--quiet"]
     process = subprocess.Popen(
         [sys.executable, "-m", "gimpslope.cli", *words],
         stdout=subprocess.PIPE,

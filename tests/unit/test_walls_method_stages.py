@@ -148,12 +148,49 @@ def test_method_refuses_two_ways_of_giving_one_thing(given):
         Method(**given)
 
 
-def test_stages_have_the_defaults_of_the_study():
-    assert Stages() == Stages(
-        gravity=Gravity(ramp=0.5),
-        settling=Settling(ratio=1e-6, limit=20.0, damping="kinetic", coefficient=None),
-        slide=Slide(duration=10.0, rest_ratio=0.0),
+def test_stages_find_a_static_solution_unless_told():
+    settling = Settling(unbalanced=2e-3, limit=20.0, damping="kinetic", courant=0.9)
+    slide = Slide(duration=10.0, rest_ratio=0.0, rest_change=None)
+    assert Stages() == Stages(Gravity(ramp=0.0), settling, slide)
+
+
+def test_criteria_of_settling():
+    by_ratio, local, both = (
+        Settling(1e-6),
+        Settling(damping="local"),
+        Settling(1e-6, unbalanced=0.1),
     )
+    assert (by_ratio.ratio, by_ratio.unbalanced, by_ratio.courant) == (1e-6, None, None)
+    assert (local.ratio, local.unbalanced, local.courant) == (1e-6, None, None)
+    assert (both.ratio, both.unbalanced, both.courant) == (1e-6, 0.1, 0.9)
+    assert Settling(1e-6, courant=0.5).courant == 0.5
+
+
+def test_stages_recorded_before_there_were_static_ones_stay_what_they_were():
+    recorded = {
+        "type": "Stages",
+        "gravity": {"type": "Gravity", "ramp": 0.5},
+        "settling": {
+            "type": "Settling",
+            "ratio": 1e-06,
+            "limit": 20.0,
+            "damping": "kinetic",
+            "coefficient": None,
+        },
+        "slide": {
+            "type": "Slide",
+            "duration": 4.0,
+            "rest_ratio": 0.0,
+            "rest_speed": None,
+            "rest_time": 0.1,
+        },
+    }
+    assert Stages.from_dict(recorded) == Stages(Gravity(0.5), Settling(1e-6), Slide(4.0))
+
+
+def test_slide_until_rest():
+    slide = Slide(4.0, rest_ratio=0.5, rest_speed=1.0).until_rest()
+    assert slide == Slide(4.0, rest_ratio=1e-2, rest_time=0.5, rest_change=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -179,12 +216,19 @@ def test_damping_for_the_kernel(settling, arguments):
         (Settling, "damping", "viscous", ValueError),
         (Settling, "damping", None, TypeError),
         (Settling, "coefficient", 0.5, ValueError),
+        (Settling, "unbalanced", 0.0, ValueError),
+        (Settling, "unbalanced", 1.0, ValueError),
+        (Settling, "courant", 0.0, ValueError),
+        (Settling, "courant", 1.1, ValueError),
+        (Settling, "courant", True, TypeError),
         (Slide, "duration", 0.0, ValueError),
         (Slide, "duration", True, TypeError),
         (Slide, "rest_ratio", -0.1, ValueError),
         (Slide, "rest_ratio", 1.0, ValueError),
         (Slide, "rest_speed", 0.1, ValueError),
         (Slide, "rest_time", -0.1, ValueError),
+        (Slide, "rest_change", 0.1, ValueError),
+        (Slide, "rest_change", 0.0, ValueError),
         (Stages, "slide", 10.0, TypeError),
         (Stages, "gravity", "Slide", TypeError),
     ],
@@ -192,6 +236,16 @@ def test_damping_for_the_kernel(settling, arguments):
 def test_stage_refusal_names_parameter_and_value(stage, name, value, error):
     with pytest.raises(error, match=f"^{name} must be .*got .*{value}"):
         stage(**{name: value})
+
+
+def test_local_damping_has_no_moments_of_rest():
+    with pytest.raises(ValueError, match=r"unbalanced must be None unless .*, got 0\.1 with"):
+        Settling(damping="local", unbalanced=0.1)
+
+
+def test_change_at_rest_needs_a_time():
+    with pytest.raises(ValueError, match="rest_time must be a finite number > 0, got 0"):
+        Slide(rest_ratio=0.1, rest_change=0.1, rest_time=0)
 
 
 @pytest.mark.parametrize("coefficient", [0, 1, -0.5, math.nan])
@@ -206,6 +260,7 @@ def test_local_damping_refuses(coefficient):
         Walls(right=Coulomb(0.2), top=Roller()),
         Method(shape="cpgimp", viscosity=0.1, time_step=1e-5, threads=3, allow_unstable=True),
         Stages(Gravity(0), Settling(damping="local", coefficient=0.5), Slide(4.0, 1e-3)),
+        Stages(settling=Settling(unbalanced=0.1, courant=0.5), slide=Slide().until_rest()),
     ],
     ids=lambda record: type(record).__name__,
 )

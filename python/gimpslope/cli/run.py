@@ -66,6 +66,12 @@ def add(commands: Commands) -> None:
         choices=["point", "cell_average"],
         help="cell_average keeps soil from locking (default: point, as in the paper)",
     )
+    parser.add_argument(
+        "--until-rest",
+        action="store_true",
+        help="end the slide once its largest displacements and its run-out would change by less "
+        "than 0.2 %% in the rest of its duration",
+    )
     parser.add_argument("--threads", type=int, metavar="N", help="(default: 1)")
     parser.add_argument(
         "--output", metavar="FILE", help="ends in .h5 (default: the slope's name and .h5)"
@@ -79,6 +85,8 @@ def add(commands: Commands) -> None:
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
     repeated = Run(options.slope) if has_ending(options.slope, ".h5") else None
     setup = _setup(options, repeated)
+    if options.until_rest:
+        setup = _until_rest(setup, repeated)
     if options.threads is not None:
         setup = replace(setup, method=replace(setup.method, threads=options.threads))
     output = options.output or _default_output(options.slope, repeated)
@@ -125,6 +133,13 @@ def _setup(options: argparse.Namespace, repeated: Run | None) -> Setup:
             f"or a run file that ends in .h5, got {options.slope!r}"
         )
     return scene_file.read(options.slope)
+
+
+def _until_rest(setup: Setup, repeated: Run | None) -> Setup:
+    if repeated is not None:
+        raise ValueError(f"--until-rest must be left out of a run to repeat, got {repeated}")
+    slide = setup.stages.slide.until_rest()
+    return replace(setup, stages=replace(setup.stages, slide=slide))
 
 
 def _title(options: argparse.Namespace) -> str:

@@ -17,7 +17,9 @@ Root attributes
 /final
     the same fields once, 64-bit; attribute time.
 /trigger
-    attributes energy_released (J/m), settling_time (s), settling_ratio (kinetic over potential).
+    attributes energy_released (J/m), settling_time (s), settling_ratio (kinetic over potential),
+    settling_unbalanced (unbalanced forces over weight when kinetic damping last stopped all motion,
+    infinite where it did not; not in files of older versions).
 
 Every dataset has the attributes units and description. The file is closed between flushes, and a
 process killed at any moment leaves it readable to the last flush. A reading that meets a write of a

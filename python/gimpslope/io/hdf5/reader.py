@@ -148,7 +148,8 @@ def read_final(path: str | PathLike[str]) -> tuple[float, Arrays] | None:
 
 @_patient
 def read_trigger(path: str | PathLike[str]) -> dict[str, float]:
-    """energy_released (J/m), settling_time (s) and settling_ratio; none yet: empty mapping."""
+    """energy_released (J/m), settling_time (s), settling_ratio and settling_unbalanced; none yet:
+    empty mapping."""
     with _opened(path) as file:
         trigger = file["trigger"].attrs if "trigger" in file else {}
         return {name: float(trigger[name]) for name in trigger if name != "description"}

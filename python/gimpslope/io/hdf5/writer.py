@@ -151,16 +151,23 @@ class RunWriter:
         self._snapshots.append((time, _checked(fields, SNAPSHOT_FIELDS, self._count, copy=False)))
 
     def write_trigger(
-        self, *, energy_released: float, settling_time: float, settling_ratio: float
+        self,
+        *,
+        energy_released: float,
+        settling_time: float,
+        settling_ratio: float,
+        settling_unbalanced: float,
     ) -> None:
-        """Write the energy released at the return, J/m, and how the settling ended, s and 1."""
+        """Write the energy released at the return, J/m, and how the settling ended, s, 1 and 1."""
         with self._flushed() as file:
             trigger = file.require_group("trigger")
             trigger.attrs["energy_released"] = energy_released
             trigger.attrs["settling_time"] = settling_time
             trigger.attrs["settling_ratio"] = settling_ratio
+            trigger.attrs["settling_unbalanced"] = settling_unbalanced
             trigger.attrs["description"] = (
-                "energy_released in J/m, settling_time in s, settling_ratio kinetic over potential"
+                "energy_released in J/m, settling_time in s, settling_ratio kinetic over "
+                "potential, settling_unbalanced unbalanced forces over weight"
             )
 
     def write_final(self, time: float, fields: Mapping[str, ArrayLike]) -> None:
