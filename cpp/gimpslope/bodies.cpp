@@ -27,13 +27,15 @@ Bodies::Bodies(std::span<const std::int32_t> number_of_point, int threads) : thr
     offset_[c].resize(points);
     half_length_[c].resize(points);
   }
-  for (auto* values : {&mass_, &inertia_, &radius_}) values->resize(bodies);
+  for (auto* values : {&mass_, &inertia_, &radius_, &friction_, &mutual_friction_})
+    values->resize(bodies);
   states_.resize(bodies);
   reports_.resize(bodies);
   held_.resize(bodies);
   reaches_.resize(bodies);
-  // Each of the walls in two places, and any other body as a rule once.
-  contacts_.resize(16 * bodies);
+  window_at_.resize(2 * bodies);
+  // Each of the walls in two places, and other bodies as a rule at most once a point.
+  contacts_.resize(8 * bodies + points);
 }
 
 void Bodies::find(const Points& points) {
@@ -47,10 +49,12 @@ void Bodies::take_shape(const Points& points, double half_length, double cell) {
   if (empty()) return;
   find(points);
   const double* mass = points.mass[0];
-  double largest = 0.0;  // of a body
+  double largest = 0.0;   // of a body
+  std::int32_t most = 0;  // points of one
   widest_ = 0.0;
   for (std::size_t b = 0; b < states_.size(); ++b) {
     const int begin = begin_[b], end = begin_[b + 1];
+    most = std::max(most, end - begin);
     BodyState& state = states_[b];
     double sum[2] = {};
     mass_[b] = inertia_[b] = radius_[b] = state.angle = 0.0;
@@ -77,10 +81,25 @@ void Bodies::take_shape(const Points& points, double half_length, double cell) {
     }
     largest = std::max(largest, radius_[b]);
   }
+  near_.resize(6 * static_cast<std::size_t>(most));
   // Shape functions reach two cells beyond a domain at most.
   window_ = 2 * static_cast<int>(std::ceil(largest / cell)) + 6;
-  nodes_.resize(states_.size() * window_ * window_);
-  shares_.resize(static_cast<std::size_t>(threads_) * window_ * window_);
+  const std::size_t size = static_cast<std::size_t>(window_) * window_;
+  nodes_.resize(states_.size() * size);
+  meetings_.assign(states_.size() * size, Meeting::apart);
+  shares_.resize(3 * threads_ * size);
+}
+
+void Bodies::take_friction(const Points& points, const std::vector<Material>& materials) {
+  for (std::size_t b = 0; b < states_.size(); ++b) {
+    const Material& material = materials[points.material[member_[begin_[b]]]];
+    friction_[b] = material.interface_coefficient();
+    mutual_friction_[b] = material.mutual_coefficient();
+  }
+}
+
+bool Bodies::slide_on_soil() const {
+  return std::any_of(friction_.begin(), friction_.end(), [](double mu) { return mu >= 0.0; });
 }
 
 void Bodies::take_motion(Points& points) {
@@ -160,8 +179,21 @@ double Bodies::largest_speed(const Points& points) const {
   return std::sqrt(square);
 }
 
-BodiesView Bodies::view(const Points& points, std::size_t nodes) {
+/// Bodies whose circles come so near each other, in order.
+void Bodies::find_pairs(double within) {
+  pairs_.clear();
+  for (std::int32_t a = 0; a < static_cast<std::int32_t>(states_.size()); ++a) {
+    for (std::int32_t b = a + 1; b < static_cast<std::int32_t>(states_.size()); ++b) {
+      const double *p = states_[a].centre, *q = states_[b].centre;
+      if (std::hypot(p[0] - q[0], p[1] - q[1]) < radius_[a] + radius_[b] + within)
+        pairs_.insert(pairs_.end(), {a, b});
+    }
+  }
+}
+
+BodiesView Bodies::view(const Points& points, std::size_t nodes, double travel) {
   find(points);
+  find_pairs(2.0 * travel);
   owner_.assign(nodes, -1);
   return {static_cast<int>(states_.size()),
           begin_.data(),
@@ -171,6 +203,8 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes) {
           mass_.data(),
           inertia_.data(),
           radius_.data(),
+          friction_.data(),
+          mutual_friction_.data(),
           states_.data(),
           reports_.data(),
           held_.data(),
@@ -179,6 +213,12 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes) {
           window_,
           shares_.data(),
           owner_.data(),
+          pairs_.data(),
+          static_cast<int>(pairs_.size() / 2),
+          near_.data(),
+          static_cast<int>(near_.size() / 6),
+          meetings_.data(),
+          window_at_.data(),
           contacts_.data(),
           static_cast<int>(contacts_.size()),
           &contact_count_,
@@ -186,7 +226,8 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes) {
 }
 
 std::int64_t Bodies::bytes() const {
-  return sizeof(double) * (4 * given_.size() + shares_.size()) + sizeof(BodyNode) * nodes_.size() +
+  return sizeof(double) * (4 * given_.size() + shares_.size() + near_.size()) +
+         sizeof(BodyNode) * nodes_.size() +
          sizeof(std::int32_t) * (2 * given_.size() + owner_.size());
 }
 

@@ -31,6 +31,12 @@ class Bodies {
   /// a common one; its angle is then 0.
   void take_shape(const Points& points, double half_length, double cell);
 
+  /// Takes the friction of each from the material of its points.
+  void take_friction(const Points& points, const std::vector<Material>& materials);
+
+  /// Whether soil may slide along one of them.
+  bool slide_on_soil() const;
+
   /// Gives each body the momentum and angular momentum of its points, and them its motion.
   void take_motion(Points& points);
 
@@ -44,8 +50,9 @@ class Bodies {
   double momentum() const;                                            // sum of sizes, N s/m
   double largest_speed(const Points& points) const;                   // of a point, m/s
 
-  /// What the sweeps see, for points as they lie in storage and a grid of so many nodes.
-  BodiesView view(const Points& points, std::size_t nodes);
+  /// What the sweeps see, for points as they lie in storage, a grid of so many nodes, and bodies
+  /// whose points go no farther than `travel` before the next view, m.
+  BodiesView view(const Points& points, std::size_t nodes, double travel);
 
   double widest() const { return widest_; }  // domain of a point, which all keep, m
 
@@ -56,19 +63,22 @@ class Bodies {
 
  private:
   void find(const Points& points);
+  void find_pairs(double within);
 
   std::vector<std::int32_t> numbers_;
   std::vector<std::int32_t> begin_;   // of each body's points in
   std::vector<std::int32_t> given_;   // points in the order they came in,
   std::vector<std::int32_t> member_;  // and where they are in storage
   std::array<std::vector<double>, 2> offset_, half_length_;
-  std::vector<double> mass_, inertia_, radius_;
+  std::vector<double> mass_, inertia_, radius_, friction_, mutual_friction_;
   std::vector<BodyState> states_;
   std::vector<BodyReport> reports_;
   std::vector<HeldBody> held_;
   std::vector<BodyNode> nodes_;
   std::vector<std::int32_t> reaches_, owner_;
-  std::vector<double> shares_;
+  std::vector<double> shares_, near_;
+  std::vector<Meeting> meetings_;
+  std::vector<std::int32_t> window_at_, pairs_;  // two each
   std::vector<Contact> contacts_;
   int contact_count_ = 0, window_ = 0, threads_ = 1;
   bool contacts_missed_ = false;

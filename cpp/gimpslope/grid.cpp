@@ -79,6 +79,7 @@ void Grid::fit(Cell low, Cell high) {
     field->assign(4 * columns * rows, 0.0);
   if (keeps_body_forces_) body_.assign(4 * columns * rows, 0.0);
   if (keeps_cells_) cells_.assign(4 * columns * rows, 0.0);
+  if (keeps_soil_) soil_.assign(4 * columns * rows, 0.0);
 }
 
 void Grid::keep(Buffer<double>& update, Cell low, Cell high) const {
@@ -99,12 +100,16 @@ void Grid::activate(int row, NodeRange columns) {
   active_[row].end = std::max(active_[row].end, columns.end);
 }
 
-void Grid::clear() { std::fill(momentum_.begin(), momentum_.end(), 0.0); }
+void Grid::clear() {
+  for (Buffer<double>* field : {&momentum_, &soil_}) std::fill(field->begin(), field->end(), 0.0);
+}
 
 GridView Grid::view() {
   GridView view{cell_,
                 x_ + low_.column * cell_,
                 y_ + low_.row * cell_,
+                low_.column,
+                low_.row,
                 columns_,
                 rows_,
                 active_.data(),
@@ -114,6 +119,7 @@ GridView Grid::view() {
                 update_.data(),
                 body_.empty() ? nullptr : body_.data(),
                 cells_.empty() ? nullptr : cells_.data(),
+                soil_.empty() ? nullptr : soil_.data(),
                 {},
                 {},
                 {}};
@@ -128,7 +134,8 @@ GridView Grid::view() {
 
 std::int64_t Grid::bytes() const {
   std::int64_t total = active_.capacity() * sizeof(NodeRange);
-  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_, &body_, &cells_})
+  for (const Buffer<double>* field :
+       {&momentum_, &velocity_, &force_, &update_, &body_, &cells_, &soil_})
     total += sizeof(double) * field->capacity();
   return total;
 }

@@ -4,13 +4,14 @@
 // with the forces f and the walls' reactions to v+. Let vm = (v' + v+) / 2, dv = v+ - v', the
 // impulse of the walls j = m dv - dt f, and w(s) the elastic energy a volume. Then
 //
-//   friction     m (v-^2 - v'^2) / 2 - j . vm, of components along a Coulomb wall
+//   friction     m (v-^2 - v'^2) / 2 - j . vm, of components along a Coulomb wall; and the impulse
+//                of soil that slips along a rigid body times the mean slip
 //   impact       the same of all others, and of those that another wall stops
 //   damping      -dt (local damping force) . vm, and what kinetic damping takes
 //   external     dt (body force, less the part of gravity that a ramp holds back) . vm
 //   transfer     m (v+^2 - v-^2) / 2 of the nodes less the points' gain of kinetic energy
 //   rigidity     what rigid bodies take from the nodes they hold, as impact, less all they gain
-//                but by gravity and body forces
+//                but by gravity and body forces, less their friction along soil
 //   plastic      V s : (plastic strain increment), with the stress s after the return
 //   hypoelastic  -dV w(s before): the rate law stores energy a volume, and volumes change
 //   integration  V w(ds) - dt (internal force - m g) . dv / 2

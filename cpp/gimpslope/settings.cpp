@@ -68,9 +68,12 @@ void Solver::set_materials(std::vector<Material> materials) {
   std::vector<Law> laws = laws_of(materials);
   for (std::size_t m = 0; m < laws.size(); ++m)
     require((laws[m].kind == LawKind::rigid) == (laws_[m].kind == LawKind::rigid) &&
-                (laws[m].kind != LawKind::rigid || materials[m].density == materials_[m].density),
+                (laws[m].kind != LawKind::rigid ||
+                 (materials[m].density == materials_[m].density &&
+                  materials[m].interface_friction == materials_[m].interface_friction &&
+                  materials[m].mutual_friction == materials_[m].mutual_friction)),
             "materials", "number " + std::to_string(m),
-            "rigid where it was, with the density that it had, and only there");
+            "rigid where it was, with the density and friction that it had, and only there");
   // The same stiffness stays accepted, however the density has changed since the step was given.
   if (stable_time_step_of(materials) < stable_time_step()) check_step(method_.time_step, materials);
   laws_ = std::move(laws);

@@ -57,6 +57,8 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
   fill(given);
   bodies_.take_shape(points_, half_length_, cell);
   bodies_.take_motion(points_);
+  bodies_.take_friction(points_, materials_);
+  if (bodies_.slide_on_soil()) grid_.keep_soil();
   if (method_.volumetric_strain == VolumetricStrain::cell_average) grid_.keep_cells();
   if (method_.precision == Precision::single) single_ = std::make_unique<SinglePoints>();
   choose_kernel();
@@ -222,7 +224,8 @@ void Solver::prepare() {
     if (!bodies_.empty()) {
       const GridView grid = grid_.view();
       bodies_view_ = bodies_.view(
-          points_, static_cast<std::size_t>(grid.stride) * static_cast<std::size_t>(grid.rows));
+          points_, static_cast<std::size_t>(grid.stride) * static_cast<std::size_t>(grid.rows),
+          (kTravelBetweenSorts + kFarthestStep) * grid_.cell());
     }
     travel_ = 0.0;
     steps_since_sort_ = 0;

@@ -60,14 +60,17 @@ struct NodeRange {
 /// {S,x S S,x S} serves both components; `update` {dt vx, dt vy, bx, by} is what a point adds to
 /// its motion. `body` {bx, by, -, -}, the points' body forces, is null until there are any;
 /// `cells` {V, V h tr(L) before, V (sxx + syy) / 2, V after the stress update}, sums over the
-/// points in the cell to the upper right of the node, is null unless they are averaged.
+/// points in the cell to the upper right of the node, is null unless they are averaged. `soil`
+/// {V h dS/dx, V h dS/dy, V S, -}, the volume of deformable points at the node and its gradient, is
+/// null unless they may slide along a rigid body.
 struct GridView {
   double cell;
-  double left, bottom;  // coordinates of node 0
-  int stride;           // nodes from one row to the next
+  double left, bottom;       // coordinates of node 0
+  std::int32_t column, row;  // of node 0, from the origin of the grid
+  int stride;                // nodes from one row to the next
   int rows;
   const NodeRange* active;  // of each row
-  double *momentum, *velocity, *force, *update, *body, *cells;
+  double *momentum, *velocity, *force, *update, *body, *cells, *soil;
   WallKind kind[4];
   double friction[4];
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
@@ -80,6 +83,10 @@ struct BodyState {
   double impulse[2], angular_impulse;  // of all but gravity, N s/m; N m s/m, about the centre
 };
 
+/// How soil at a node meets a body that it may slide along; `welded` where there is no telling
+/// which way the surface faces.
+enum class Meeting : std::uint8_t { apart, slipping, stuck, welded };
+
 /// A node that a body reaches, and what it is in a step where the body holds it; vectors {x, y}.
 struct BodyNode {
   std::int32_t node;
@@ -90,14 +97,24 @@ struct BodyNode {
   double raw[2], before[2];       // velocity of the soil, and with the body, m/s
   double internal[2], weight[2];  // forces, N/m
   double body[2], damping[2], full_weight[2];
+  // Where soil may slide along the body:
+  double slope[2];   // down which the share falls, a cell
+  double normal[2];  // of the body's surface, outwards
+  double free[2];    // velocity of the soil after the forces, as if there were no body, m/s
+  double taken[2];   // impulse that the soil takes from the body, N s/m
+  Meeting meeting;   // in the step before, then in this one
+  bool damped;       // alone, not with the body
 };
 
-/// A body with the nodes it holds, as one: its centre seen from that of the body alone.
+/// A body with the nodes it holds, as one: its centre seen from that of the body alone. One that
+/// soil may slide along is alone, and its velocity includes what the nodes have taken from it.
 struct HeldBody {
   double mass, inertia;  // kg/m; kg m
   double centre[2];      // m
   double velocity[2], spin;
   double damping[2], damping_moment;  // N/m; N m/m
+  double taken[2], taken_moment;      // by the nodes; N s/m; N m s/m
+  bool touches;                       // a wall or another body
 };
 
 /// What a body reports of a step.
@@ -113,7 +130,6 @@ struct Contact {
   std::int32_t body, other;
   double normal[2];       // from the wall or the other body
   double place[2];        // m
-  double weight;          // of the nodes that it is the mean of
   double closing;         // speed that would close the gap in the step, m/s
   double friction;        // coefficient; infinite where the wall holds what touches it
   double pushed, rubbed;  // impulses, N s/m
@@ -127,14 +143,22 @@ struct BodiesView {
   const std::int32_t* member;                // storage index of a point
   const double *offset[2], *half_length[2];  // from the centre at angle 0, m; m
   const double *mass, *inertia, *radius;     // of a body: kg/m; kg m; m
+  const double* friction;                    // coefficient along soil; negative where that sticks
+  const double* mutual_friction;             // coefficient along other bodies
   BodyState* state;
   BodyReport* reports;
   HeldBody* held;
   BodyNode* nodes;
   std::int32_t* reaches;
   int window;
-  double* shares;       // window^2 for each thread
-  std::int32_t* owner;  // of each node of the grid: a place in `nodes`, -1 between steps
+  double* shares;             // and slopes, 3 window^2 for each thread
+  std::int32_t* owner;        // of each node of the grid: a place in `nodes`, -1 between steps
+  const std::int32_t* pairs;  // of bodies that may meet before the next sort
+  int pair_count;
+  double* near;             // room for x, y and half-length of points of two bodies,
+  int near_room;            // so many of each
+  Meeting* meetings;        // in the step before: window^2 of each body,
+  std::int32_t* window_at;  // column and row of the first of these, from the grid's origin
   Contact* contacts;
   int contact_room;
   int* contact_count;

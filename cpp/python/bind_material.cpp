@@ -1,4 +1,7 @@
+#include <pybind11/stl.h>
+
 #include <cmath>
+#include <optional>
 
 #include "bind.hpp"
 #include "gimpslope/material/material.hpp"
@@ -9,7 +12,8 @@ void bind_material(py::module_& m) {
   py::class_<Material>(m, "Material", "Density, elasticity and strength of a material.")
       .def(py::init([](double density, double young, double poisson, const std::string& law,
                        double friction, double cohesion, double dilation, const std::string& cone,
-                       double tension_cutoff) {
+                       double tension_cutoff, std::optional<double> interface_friction,
+                       double mutual_friction) {
              Material material{
                  density,
                  young,
@@ -26,14 +30,17 @@ void bind_material(py::module_& m) {
                               {"inner", Cone::inner},
                               {"plane_strain_associated", Cone::plane_strain_associated},
                               {"plane_strain", Cone::plane_strain}}),
-                 tension_cutoff};
+                 tension_cutoff,
+                 interface_friction,
+                 mutual_friction};
              material.check();
              return material;
            }),
            py::arg("density"), py::arg("young") = NAN, py::arg("poisson") = NAN,
            py::arg("law") = "elastic", py::arg("friction") = 0.0, py::arg("cohesion") = 0.0,
            py::arg("dilation") = 0.0, py::arg("cone") = "plane_strain_associated",
-           py::arg("tension_cutoff") = INFINITY)
+           py::arg("tension_cutoff") = INFINITY, py::arg("interface_friction") = py::none(),
+           py::arg("mutual_friction") = 0.0)
       .def_property_readonly("bulk_modulus", &Material::bulk_modulus)
       .def_property_readonly("shear_modulus", &Material::shear_modulus)
       .def_property_readonly(

@@ -23,6 +23,8 @@ class Material:
         dilation: float = ...,
         cone: str = ...,
         tension_cutoff: float = ...,
+        interface_friction: float | None = ...,
+        mutual_friction: float = ...,
     ) -> None: ...
     @property
     def bulk_modulus(self) -> float: ...

@@ -27,7 +27,7 @@ class Ledger(NamedTuple):
     ----------
     plastic : work on plastic strains, with the stress after the return; and the elastic energy that
         `release_stress` releases
-    friction : taken by Coulomb walls along them
+    friction : taken by Coulomb walls, and by rigid stones that soil slides along
     impact : what walls take at once of motion into them or off them, and, if they are fixed, along
     damping : taken by local and kinetic damping
     transfer : lost between points and grid: by the share of PIC, which smooths the velocities of
@@ -36,7 +36,8 @@ class Ledger(NamedTuple):
     hypoelastic : taken by the rate form of the elastic law, which stores energy a volume while
         volumes change; of either sign, and small where elastic strains are
     integration : residue of the finite time step; it swings at first order in the step
-    rigidity : lost where rigid stones meet the soil that they hold, walls, and each other
+    rigidity : lost where rigid stones meet the soil that they hold, walls, and each other, but for
+        their friction along soil
     """
 
     plastic: float

@@ -184,23 +184,34 @@ class Rigid(Material):
     """A material of stones that do not deform: each moves as one.
 
     A stone has a velocity field of its own. It holds the nodes of the grid in it and up to about
-    half a cell around it: soil sticks to it there, and its momentum and angular momentum take up
-    what the soil gives them. Walls push it with their friction, other rigid stones without. No wave
-    runs in it, so that the other materials set the time step alone. Of stones only, and in double
-    precision only.
+    half a cell around it: soil sticks to it there or, with a friction angle, slides along it and
+    comes off it, and its momentum and angular momentum take up what the soil gives them. Walls push
+    it with their friction, other rigid stones with the smaller of both frictions. No wave runs in
+    it, so that the other materials set the time step alone. Of stones only, and in double precision
+    only.
 
     Parameters
     ----------
     density : kg/m3, > 0
+    friction : angle of friction along soil, which then comes off without a pull, degrees, in
+        [0, 90); None: soil sticks to the stone
+    mutual_friction : angle of friction along other rigid stones, degrees, in [0, 90); None:
+        `friction`, and 0 where soil sticks
 
     Raises
     ------
     TypeError, ValueError
-        If the density is not a positive number.
+        If a parameter is not a finite number in its range.
     """
+
+    friction: float | None = None
+    mutual_friction: float | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        for name in ("friction", "mutual_friction"):
+            if (angle := getattr(self, name)) is not None:
+                self._store(**{name: _check.finite(name, angle)})
         self.to_core()
 
     def elastic(self) -> Rigid:
@@ -209,4 +220,10 @@ class Rigid(Material):
 
     def to_core(self) -> _core.Material:
         """The material as the compiled kernel takes it."""
-        return _core.Material(self.density, law="rigid")
+        mutual = self.friction if self.mutual_friction is None else self.mutual_friction
+        return _core.Material(
+            self.density,
+            law="rigid",
+            interface_friction=self.friction,
+            mutual_friction=0.0 if mutual is None else mutual,
+        )

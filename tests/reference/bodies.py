@@ -1,12 +1,14 @@
 """Stones that do not deform, in a velocity field of their own.
 
 A stone holds nodes by the share of their cells that it fills; with these it is one rigid body that
-takes up the forces of the soil there, and that walls and other stones push. Its own points give the
+takes up the forces of the soil there, unless soil may slide along it, and that walls and other
+stones push. Its own points give the
 grid nothing and take nothing from it.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,14 +22,19 @@ Mask = NDArray[np.bool_]
 HELD_SHARE = 0.0774  # of a cell, or of the largest share where that is below one
 SPREAD = 1e-3  # at a wall: by how much of its distance to the side a place counts as nearer
 SWEEPS = 30
+SEEN = 0.1  # gap of stones at which a contact begins to be watched, cells
+SURROUND = 1.5  # distance of the points that tell its normal, cells
 _SIGNS = np.array([-1.0, 1.0])
 
 
 @dataclass
 class Rigid:
-    """The material of a rigid stone, kg/m3."""
+    """The material of a rigid stone, kg/m3, and its friction along soil, which otherwise sticks to
+    it, and along other stones, degrees."""
 
     density: float
+    friction: float | None = None
+    mutual_friction: float = 0.0
 
 
 class Body:
@@ -45,7 +52,10 @@ class Body:
         mass: Array,
         volume: Array,
         half_length: Array,
+        material: Rigid,
     ) -> None:
+        self.friction = None if material.friction is None else np.tan(np.radians(material.friction))
+        self.mutual_friction = float(np.tan(np.radians(material.mutual_friction)))
         self.of, self.point_mass = of, mass[of]
         self.volume, self.half_length = volume[of], half_length[of]
         self.mass = float(self.point_mass.sum())
@@ -139,14 +149,17 @@ class Whole:
         self.spin += float(cross(place - self.centre, impulse)) / self.inertia
 
 
-def shares(bodies: Sequence[Body], shape: str, lines: tuple[Array, Array], cell: float) -> Array:
-    """The share of each node's cell that each body fills, (n_bodies, n_nodes)."""
-    return np.array(
-        [
-            body.volume @ weights(shape, body.points()[0], body.half_length, lines, cell)[0]
-            for body in bodies
-        ]
-    ) / (cell**2)
+def shares(
+    bodies: Sequence[Body], shape: str, lines: tuple[Array, Array], cell: float
+) -> tuple[Array, Array]:
+    """The share of each node's cell that each body fills, (n_bodies, n_nodes), and its gradient a
+    cell, (n_bodies, n_nodes, 2)."""
+    share, slope = [], []
+    for body in bodies:
+        s, sx, sy = weights(shape, body.points()[0], body.half_length, lines, cell)
+        share.append(body.volume @ s / cell**2)
+        slope.append(-np.stack([body.volume @ sx, body.volume @ sy], axis=1) / cell)
+    return np.array(share), np.array(slope)
 
 
 def least_share(share: Array) -> Array:
@@ -182,21 +195,52 @@ class Contact:
     rubbed: float = 0.0
 
 
-def overlaps(bodies: Sequence[Body], share: Array, nodes: Array) -> Iterator[Contact]:
-    """Contacts of bodies that together fill more than a node's cell: at the mean place of such
-    nodes, along the line between their centres. Each with the one that fills the most so far."""
-    along_rows = np.lexsort(nodes.T)
-    for b in range(1, len(bodies)):
-        largest = share[:b].argmax(axis=0)
-        before = share[:b].max(axis=0)
-        meet = (before > 0) & (share[b] > 0) & (before + share[b] > 1)
-        for a in dict.fromkeys(largest[along_rows][meet[along_rows]].tolist()):
-            of = meet & (largest == a)
-            place = np.average(nodes[of], axis=0, weights=share[a, of] * share[b, of])
-            between = bodies[a].centre - bodies[b].centre
-            length = float(np.hypot(*between))
-            normal = between / length if length > 0 else np.zeros(2)
-            yield Contact(a, b, normal, place, 0.0, 0.0)
+def stone_contacts(bodies: Sequence[Body], cell: float, dt: float) -> Iterator[Contact]:
+    """Contacts of bodies, where points of them lie next to each other."""
+    for a, b in combinations(range(len(bodies)), 2):
+        between = np.hypot(*(bodies[a].centre - bodies[b].centre))
+        if between <= bodies[a].radius + bodies[b].radius + SEEN * cell:
+            yield from _contacts_of(a, b, bodies, cell, dt)
+
+
+def _contacts_of(
+    a: int, b: int, bodies: Sequence[Body], cell: float, dt: float
+) -> Iterator[Contact]:
+    places, others = bodies[a].points()[0], bodies[b].points()[0]
+    size, other_size = (np.sqrt(bodies[i].half_length.prod(axis=1)) for i in (a, b))
+    friction = min(bodies[i].mutual_friction for i in (a, b))
+    for place, half in zip(places, size, strict=True):
+        k = int(np.hypot(*(others - place).T).argmin())
+        between, middle = place - others[k], (place + others[k]) / 2
+        both = half + other_size[k]
+        if between @ between > (both + SEEN * cell) ** 2 + both**2:
+            continue
+        near, opposite = (
+            of[np.hypot(*(of - middle).T) <= SURROUND * cell] for of in (places, others)
+        )
+        line = shortest_between(near, opposite)
+        normal = line / np.hypot(*line)
+        gap = float(between @ normal) - both
+        if gap <= SEEN * cell and abs(cross(normal, between)) <= both:
+            yield Contact(a, b, normal, middle, max(gap, 0.0) / dt, friction)
+
+
+def shortest_between(a: Array, b: Array) -> Array:
+    """From b to a, the shortest line between the convex hulls of points a (n, 2) and b (m, 2) that
+    lie apart: it begins or ends at one of these, and ends on a chord of the others."""
+    lines = np.concatenate([_to_chords(a, b), -_to_chords(b, a)])
+    return np.asarray(lines[np.hypot(*lines.T).argmin()])
+
+
+def _to_chords(points: Array, others: Array) -> Array:
+    """From the chords of the others, which are points too, the shortest line to each point."""
+    first, second = others[:, None], others[None]
+    chord = second - first
+    square = (chord**2).sum(axis=-1)
+    offset = points[:, None, None] - first
+    share = (offset * chord).sum(axis=-1) / np.where(square > 0, square, 1.0)
+    lines = offset - np.clip(share, 0.0, 1.0)[..., None] * chord
+    return np.asarray(lines.reshape(-1, 2))
 
 
 def wall_contacts(
@@ -223,15 +267,23 @@ def wall_contacts(
             yield Contact(number, None, normal, body.centre + arms[k], max(gap[k], 0.0) / dt, most)
 
 
-def resolve(contacts: Sequence[Contact], wholes: Sequence[Whole]) -> None:
+def resolve(
+    contacts: Sequence[Contact],
+    wholes: Sequence[Whole],
+    settle: Callable[[int], None] = lambda body: None,
+) -> None:
     """Impulses by which no body runs into what it touches: sequential iteration (Catto 2005).
 
     The same algorithm as the kernel's, whose result after so many sweeps is part of the method: at
     each contact in turn the impulse along the normal that leaves no closing speed beyond the one
     that closes the gap, of which the sum may not pull; then the one across that ends the sliding,
-    of which the sum is at most the friction coefficient times the other.
+    of which the sum is at most the friction coefficient times the other. Between the sweeps each
+    body that touches something settles with the soil that slides along it.
     """
-    for _ in range(SWEEPS):
+    touching = sorted({b for c in contacts for b in (c.body, c.other) if b is not None})
+    for sweep in range(SWEEPS):
+        for body in touching if sweep else ():
+            settle(body)
         for contact in contacts:
             sides = [(1.0, wholes[contact.body])]
             if contact.other is not None:

@@ -13,9 +13,9 @@ from .bodies import (
     cross,
     held_nodes,
     near_walls,
-    overlaps,
     resolve,
     shares,
+    stone_contacts,
     wall_contacts,
 )
 from .drucker_prager import (
@@ -26,6 +26,7 @@ from .drucker_prager import (
     return_mapping,
     rotate,
 )
+from .interface import APART, STUCK, WELDED, Interface, before_strain, face
 from .ledger import Ledger
 from .shapes import weights
 from .walls import NO_MOTION, Wall, hold_momentum, hold_velocity
@@ -102,6 +103,7 @@ class Reference:
                 self.mass,
                 self.volume,
                 domain,
+                self._rigid_material(number == k),
             )
             for k in np.unique(number[self.rigid])
         ]
@@ -123,6 +125,8 @@ class Reference:
         self.lines = (x, y)
         self.nodes = np.array([(a, b) for a in x for b in y])
         self.node_velocity = np.full_like(self.nodes, NO_MOTION)  # of the last step
+        # how soil at the nodes met each stone in the last step
+        self.meeting = np.full((len(self.bodies), len(self.nodes)), APART)
 
     def set_gravity(self, gx: float, gy: float, ramp: float) -> None:
         """Acceleration, m/s2, reached linearly over `ramp` seconds (0: at once)."""
@@ -183,12 +187,25 @@ class Reference:
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
         held, contacts = [], []
         if self.bodies:
-            share = shares(self.bodies, self.shape, self.lines, self.cell)
+            share, slope = shares(self.bodies, self.shape, self.lines, self.cell)
             soil = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
             held = list(held_nodes(share, soil))
-            contacts = list(overlaps(self.bodies, share, self.nodes))
-        for stone, of in zip(self.bodies, held, strict=True):
-            v[of] = stone.velocity_at(self.nodes[of])
+            contacts = list(stone_contacts(self.bodies, self.cell, dt))
+        normals: dict[int, Array] = {}
+        for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
+            of_stone = stone.velocity_at(self.nodes)
+            if stone.friction is None:
+                v[of] = of_stone[of]
+                continue
+            soft = np.where(self.rigid, 0.0, self.volume) / self.cell**2
+            of_soil = soft @ s, -np.stack([soft @ sx, soft @ sy], axis=1) * self.cell
+            found = face((share[number], slope[number]), of_soil)
+            of &= found.touching
+            meeting = self.meeting[number]
+            meeting[meeting == WELDED] = STUCK
+            meeting[~found.known] = WELDED
+            normals[number] = found.normal[of]
+            v[of] = before_strain(meeting[of], normals[number], v_raw[of], of_stone[of])
 
         velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
         cells = np.unique(
@@ -218,33 +235,59 @@ class Reference:
             momentum + dt * (force + damping), self.nodes, self.walls, self.cell
         )
         v_new = _divide(momentum, mass)
-        wholes, drags = [], []
+        wholes, drags, interfaces = [], [], {}
         for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
             given = stone.point_mass[:, None] * self.body_force[stone.of]
             pull = stone.mass * self.gravity * share_of_gravity
-            pull = pull + given.sum(axis=0) + force[of].sum(axis=0)
-            turn = float(
-                cross(stone.arms(), given).sum()
-                + cross(self.nodes[of] - stone.centre, force[of]).sum()
-            )
-            drag = -self.local_damping * np.abs(pull) * np.sign(stone.velocity)
-            drag_moment = float(-self.local_damping * abs(turn) * np.sign(stone.spin))
+            pull = pull + given.sum(axis=0)
+            turn = float(cross(stone.arms(), given).sum())
+            along = of  # nodes that move with the stone
+            if stone.friction is not None:
+                along = of & (self.meeting[number] != APART)
+            around = force[along].sum(axis=0)
+            turn_around = float(cross(self.nodes[along] - stone.centre, force[along]).sum())
+            drag = -self.local_damping * np.abs(pull + around) * np.sign(stone.velocity)
+            drag_moment = float(-self.local_damping * abs(turn + turn_around) * np.sign(stone.spin))
+            damping[along] = 0.0
+            one = of  # with the stone
+            if stone.friction is None:
+                pull, turn = pull + around, turn + turn_around
+            else:
+                one = np.zeros_like(of)
             drags.append((drag, drag_moment))
             wholes.append(
                 Whole(
                     stone,
                     stone.mass * stone.velocity + dt * (pull + drag),
                     stone.inertia * stone.spin + dt * (turn + drag_moment),
-                    self.nodes[of],
-                    mass[of],
-                    brought[of],
+                    self.nodes[one],
+                    mass[one],
+                    brought[one],
                 )
             )
-            damping[of] = 0.0
+            if stone.friction is not None:
+                interfaces[number] = Interface(
+                    stone,
+                    wholes[-1],
+                    self.nodes[of],
+                    normals[number],
+                    self.meeting[number, of],
+                    mass[of],
+                    v_raw[of] + dt * (force + damping)[of] / mass[of, None],
+                )
             contacts += wall_contacts(number, stone, self.walls, self.cell, dt)
-        resolve(contacts, wholes)
-        for whole, of in zip(wholes, held, strict=True):
-            v_new[of] = whole.velocity_at(self.nodes[of])
+        resolve(contacts, wholes, lambda b: interfaces[b].settle() if b in interfaces else None)
+        for number, (whole, of) in enumerate(zip(wholes, held, strict=True)):
+            if number not in interfaces:
+                v_new[of] = whole.velocity_at(self.nodes[of])
+                continue
+            interface, stone = interfaces[number], self.bodies[number]
+            v_new[of] = interface.velocity()
+            rubbed = interface.rubbed(v[of], v_new[of], stone.velocity_at(self.nodes[of]))
+            self.ledger.friction += rubbed
+            self.ledger.rigidity -= rubbed
+            self.meeting[number] = APART
+            self.meeting[number, of] = interface.meeting
         self.node_velocity = np.where(mass[:, None] > 0, v_new, NO_MOTION)
         accounts.nodes(
             self.ledger,
@@ -286,6 +329,12 @@ class Reference:
         self._update_domains()
         self._damp_kinetic()
         self.time += dt
+
+    def _rigid_material(self, of: NDArray[np.bool_]) -> Rigid:
+        """That of the points of a rigid stone."""
+        material = self.materials[int(self.material[of][0])]
+        assert isinstance(material, Rigid)
+        return material
 
     def _deformable(self) -> Iterator[tuple[Material, NDArray[np.bool_]]]:
         """The deformable materials and their points."""

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from gimpslope import _core
 from reference import Material, Reference
-from reference.bodies import Rigid, least_share, overlaps, shares
+from reference.bodies import Rigid, least_share, shares, stone_contacts
 from reference.ledger import Ledger
 
 Array = NDArray[np.float64]
@@ -173,7 +173,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
 
 def twin_of(scene: dict[str, Any]) -> Reference:
     materials = [
-        Rigid(given["density"]) if given.get("law") == "rigid" else Material(**given)
+        rigid(given) if given.get("law") == "rigid" else Material(**given)
         for given in scene["materials"]
     ]
     options = arguments(scene) | {"stone": scene["stone"]}
@@ -184,6 +184,12 @@ def twin_of(scene: dict[str, Any]) -> Reference:
     plain.set_gravity(*scene["gravity"])
     plain.set_damping(*scene["damping"])
     return plain
+
+
+def rigid(given: dict[str, Any]) -> Rigid:
+    return Rigid(
+        given["density"], given.get("interface_friction"), given.get("mutual_friction", 0.0)
+    )
 
 
 def kernel_of(scene: dict[str, Any], **options: Any) -> _core.Solver:
@@ -239,9 +245,9 @@ def expected(name: str) -> State:
     plain = twin_of(scene_of(name))
     nearest, met = np.inf, 0
     for _ in range(BASE["steps"]):
-        share = shares(plain.bodies, plain.shape, plain.lines, plain.cell)
+        share, _ = shares(plain.bodies, plain.shape, plain.lines, plain.cell)
         nearest = min(nearest, distance_to_a_tie(share))
-        met += len(list(overlaps(plain.bodies, share, plain.nodes)))
+        met += len(list(stone_contacts(plain.bodies, plain.cell, 1.0)))
         plain.advance(1)
     return state_of_twin(plain) | {"nearest": np.array(nearest), "met": np.array(met)}
 

@@ -33,10 +33,19 @@ double Material::wave_modulus() const {
   return law == LawKind::rigid ? 0.0 : bulk_modulus() + 4.0 / 3.0 * shear_modulus();
 }
 
+double Material::interface_coefficient() const {
+  return interface_friction ? std::tan(*interface_friction * kDegree) : -1.0;
+}
+double Material::mutual_coefficient() const { return std::tan(mutual_friction * kDegree); }
+
 void Material::check() const {
   require(density > 0.0 && density < kInfinity, "density", density,
           "positive and finite, in kg/m3");
-  if (law == LawKind::rigid) return;
+  if (law == LawKind::rigid) {
+    for (const double angle : {interface_friction.value_or(0.0), mutual_friction})
+      require(angle >= 0.0 && angle < 90.0, "friction", angle, "in [0, 90), in degrees");
+    return;
+  }
   require(young > 0.0 && young < kInfinity, "young", young, "positive and finite, in Pa");
   require(poisson > -1.0 && poisson < 0.5, "poisson", poisson, "in (-1, 0.5)");
   if (law == LawKind::elastic) return;

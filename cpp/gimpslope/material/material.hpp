@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "drucker_prager.hpp"
@@ -26,6 +27,12 @@ struct Material {
   double dilation = 0.0;  // degrees
   Cone cone = Cone::plane_strain_associated;
   double tension_cutoff = std::numeric_limits<double>::infinity();  // Pa, of the mean stress
+
+  std::optional<double> interface_friction;  // degrees, of a rigid one; none: soil sticks to it
+  double mutual_friction = 0.0;              // degrees, of rigid ones along each other
+
+  double interface_coefficient() const;  // of friction along soil, negative where that sticks
+  double mutual_coefficient() const;     // of friction along other rigid ones
 
   double bulk_modulus() const;   // Pa
   double shear_modulus() const;  // Pa

@@ -20,9 +20,7 @@ struct Usf {
       for_each_slab(view, thread, [&](int slab) {
         for_each_block(view, slab, [&](const Block& block) {
           if (is_rigid(view, block)) return;
-          Weights<Shape, Need::values> weights;
-          evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
-          scatter_momentum(view, block.begin, block.end - block.begin, weights);
+          scatter_block(view, block.begin, block.end - block.begin);
         });
       });
     });
@@ -107,6 +105,20 @@ struct Usf {
     }
   }
 
+  /// What the nodes need to know of points for the next step.
+  static void scatter_block(const View<Real>& view, int begin, int n) {
+    if (view.grid.soil == nullptr) {
+      Weights<Shape, Need::values> weights;
+      evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+      scatter_momentum(view, begin, n, weights);
+    } else {
+      Weights<Shape, Need::gradients> weights;
+      evaluate<Shape, kOwnDomain>(view, begin, n, weights);
+      scatter_momentum(view, begin, n, weights);
+      scatter_soil(view, begin, n, weights);
+    }
+  }
+
   static void move_block(const View<Real>& view, const StepInput& input, const Block& block,
                          Report& report) {
     const int begin = block.begin, n = block.end - block.begin;
@@ -118,8 +130,7 @@ struct Usf {
     if (report.lost >= 0) return;
     if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
     if (report.lost >= 0) return;
-    evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-    scatter_momentum(view, begin, n, weights);
+    scatter_block(view, begin, n);
     if (input.wants_speeds) add_speeds(view, block, report.speeds);
     if constexpr (!PointsView<Real>::relative)
       if (input.wants_energies)

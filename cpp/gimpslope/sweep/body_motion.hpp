@@ -5,59 +5,15 @@
 #include <cmath>
 
 #include "../travel.hpp"
-#include "accounts.hpp"
-#include "nodes.hpp"
+#include "body_terms.hpp"
+#include "held_nodes.hpp"
+#include "interface.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// Velocity of the place at an arm from the centre of a moving body.
-inline Pair velocity_at(const double* velocity, double spin, const double* arm) {
-  return {velocity[0] - spin * arm[1], velocity[1] + spin * arm[0]};
-}
-
-inline double cross(const double* arm, const Pair& v) { return arm[0] * v[1] - arm[1] * v[0]; }
-
-inline void set(double* two, const Pair& value) {
-  two[0] = value[0];
-  two[1] = value[1];
-}
-
-inline NodeStep step_of(const BodyNode& node) {
-  NodeStep s;
-  s.mass = node.mass;
-  s.inverse_mass = 1.0 / node.mass;
-  s.internal = Pair(node.internal[0], node.internal[1]);
-  s.weight = Pair(node.weight[0], node.weight[1]);
-  s.body = Pair(node.body[0], node.body[1]);
-  s.damping = Pair(node.damping[0], node.damping[1]);
-  s.full_weight = Pair(node.full_weight[0], node.full_weight[1]);
-  s.raw = Pair(node.raw[0], node.raw[1]);
-  s.before = Pair(node.before[0], node.before[1]);
-  return s;
-}
-
-/// Sum of the body forces of a body's points, and their moment about its centre, per metre.
-struct BodyForce {
-  double force[2] = {}, moment = 0.0;
-};
-
-inline BodyForce body_force_on(const View<double>& view, int body) {
-  const BodiesView& all = *view.bodies;
-  const PointsView<double>& p = view.points;
-  BodyForce sum;
-  if (p.body_force[0] == nullptr) return sum;
-  for (int k = all.begin[body]; k < all.begin[body + 1]; ++k) {
-    const int m = all.member[k];
-    const double arm[2] = {p.x[m] - all.state[body].centre[0], p.y[m] - all.state[body].centre[1]};
-    const Pair force = p.mass[m] * Pair(p.body_force[0][m], p.body_force[1][m]);
-    for (int c = 0; c < 2; ++c) sum.force[c] += force[c];
-    sum.moment += cross(arm, force);
-  }
-  return sum;
-}
-
-/// A body and its nodes as one rigid body that has their momentum after the forces.
+/// A body after the forces: with its nodes as one rigid body that has their momentum, or, where
+/// soil may slide along it, alone, with what the nodes take from it.
 inline void take_forces(const View<double>& view, const StepInput& input, int body) {
   const BodiesView& all = *view.bodies;
   const BodyState& state = all.state[body];
@@ -66,6 +22,8 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
   double momentum[2] = {mass * state.velocity[0], mass * state.velocity[1]};
   double turn = inertia * state.spin;  // angular momentum about the centre of the body alone
   const BodyForce given = body_force_on(view, body);
+  double around[2] = {}, around_moment = 0.0;  // forces of nodes that move with the body
+  const bool slides = all.friction[body] >= 0.0;
   double force[2] = {}, moment = given.moment;
   for (int c = 0; c < 2; ++c)
     force[c] = given.force[c] + mass * (c == 0 ? input.gravity_x : input.gravity_y);
@@ -81,6 +39,15 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
     set(node.raw, s.raw);
     set(node.before, s.before);
     const Pair pull = s.total() - s.damping, brought = s.mass * s.raw;
+    if (slides) {
+      node.damped = node.meeting == Meeting::apart;
+      set(node.free, s.raw + input.dt * s.inverse_mass * (node.damped ? s.total() : pull));
+      if (!node.damped) {  // of the whole, for damping
+        for (int c = 0; c < 2; ++c) around[c] += pull[c];
+        around_moment += cross(node.arm, pull);
+      }
+      continue;
+    }
     mass += s.mass;
     inertia += s.mass * (node.arm[0] * node.arm[0] + node.arm[1] * node.arm[1]);
     for (int c = 0; c < 2; ++c) {
@@ -97,10 +64,10 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
     return -input.local_damping * std::fabs(forcing) * ((motion > 0.0) - (motion < 0.0));
   };
   for (int c = 0; c < 2; ++c) {
-    held.damping[c] = against(force[c], state.velocity[c]);
+    held.damping[c] = against(force[c] + around[c], state.velocity[c]);
     momentum[c] += input.dt * (force[c] + held.damping[c]);
   }
-  held.damping_moment = against(moment, state.spin);
+  held.damping_moment = against(moment + around_moment, state.spin);
   turn += input.dt * (moment + held.damping_moment);
   held.mass = mass;
   for (int c = 0; c < 2; ++c) {
@@ -110,6 +77,23 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
   held.inertia =
       inertia - mass * (held.centre[0] * held.centre[0] + held.centre[1] * held.centre[1]);
   held.spin = (turn - cross(held.centre, Pair(momentum[0], momentum[1]))) / held.inertia;
+  held.taken[0] = held.taken[1] = held.taken_moment = 0.0;
+  held.touches = false;
+  if (slides) settle_nodes(all, body);
+}
+
+/// Energy that friction takes at a node: its impulse along the surface times the slip, which is the
+/// mean of those before and after the forces.
+inline double friction_at(const View<double>& view, int body, const BodyNode& node,
+                          const Pair& after) {
+  if (node.meeting != Meeting::slipping) return 0.0;
+  const BodyState& state = view.bodies->state[body];
+  const HeldBody& held = view.bodies->held[body];
+  const Pair tangent(-node.normal[1], node.normal[0]), taken(node.taken[0], node.taken[1]);
+  const Pair of_body = velocity_at(state.velocity, state.spin, node.arm) +
+                       velocity_at(held.velocity, held.spin, node.arm);
+  const Pair slip = 0.5 * (Pair(node.before[0], node.before[1]) + after - of_body);
+  return -(taken * tangent).sum() * (slip * tangent).sum();
 }
 
 /// What held nodes do to their points, and the ledger of the body and its nodes: see ledger.hpp.
@@ -118,11 +102,15 @@ inline void release_nodes(const View<double>& view, const StepInput& input, int 
   const BodiesView& all = *view.bodies;
   const HeldBody& held = all.held[body];
   const BodyNode* nodes = all.nodes + static_cast<std::ptrdiff_t>(body) * all.window * all.window;
+  const bool slides = all.friction[body] >= 0.0;
   for (int k = 0; k < all.reaches[body]; ++k) {
     const BodyNode& node = nodes[k];
     const double arm[2] = {node.arm[0] - held.centre[0], node.arm[1] - held.centre[1]};
     NodeStep s = step_of(node);
-    const Pair held_velocity = velocity_at(held.velocity, held.spin, arm);
+    Pair held_velocity = velocity_at(held.velocity, held.spin, arm);
+    if (slides)
+      held_velocity =
+          Pair(node.free[0], node.free[1]) + s.inverse_mass * Pair(node.taken[0], node.taken[1]);
     const Pair moved = input.dt * held_velocity;
     const Pair gained = held_velocity - (1.0 - input.alpha) * s.raw;
     quad(view.grid.update + 4 * node.node) = Quad{moved[0], moved[1], gained[0], gained[1]};
@@ -134,12 +122,16 @@ inline void release_nodes(const View<double>& view, const StepInput& input, int 
     ledger.external -= free.external;
     ledger.integration -= free.integration;
     ledger.transfer -= free.transfer;
-    s.damping = Pair::Zero();
+    if (!slides || !node.damped) s.damping = Pair::Zero();
     s.after = held_velocity;
     add_node(s, input.dt, ledger);
     for (int c = 0; c < 2; ++c)
       ledger.rigidity += taken_by_walls(s, input.dt, c) +
                          0.5 * s.mass * (s.raw[c] - s.before[c]) * (s.raw[c] + s.before[c]);
+    if (!slides) continue;
+    const double rubbed = friction_at(view, body, node, held_velocity);
+    ledger.friction += rubbed;
+    ledger.rigidity -= rubbed;
   }
 }
 
@@ -151,6 +143,7 @@ inline void move_body(const View<double>& view, const StepInput& input, int body
   BodyState& state = all.state[body];
   BodyReport report;
   release_nodes(view, input, body, report.ledger);
+  if (all.friction[body] >= 0.0) remember_meetings(view, body);
 
   const double mass = all.mass[body], inertia = all.inertia[body];
   const double to_centre[2] = {-held.centre[0], -held.centre[1]};

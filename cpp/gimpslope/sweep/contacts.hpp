@@ -1,51 +1,18 @@
-// Where rigid bodies meet walls and each other, and the impulses that keep them from running into
-// what they meet: by sequential iteration (Catto 2005, Iterative dynamics with temporal coherence),
-// along walls with their friction, between bodies without.
+// Where rigid bodies meet walls, and the impulses that keep them from running into these and each
+// other: by sequential iteration (Catto 2005, Iterative dynamics with temporal coherence).
 #pragma once
 
 #include <cmath>
 
 #include "../view.hpp"
-#include "body_motion.hpp"
+#include "body_terms.hpp"
+#include "interface.hpp"
+#include "stone_contacts.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 constexpr int kContactSweeps = 30;
-
-/// Adds a contact of two bodies at a node where they overlap, or to one that there is.
-inline void add_overlap(const BodiesView& all, int a, const BodyNode& of_a, int b,
-                        const BodyNode& of_b) {
-  int k = 0;
-  while (k < *all.contact_count && !(all.contacts[k].body == a && all.contacts[k].other == b)) ++k;
-  if (k == all.contact_room) {
-    *all.contacts_missed = true;
-    return;
-  }
-  Contact& contact = all.contacts[k];
-  if (k == *all.contact_count) {
-    ++*all.contact_count;
-    contact = {};
-    contact.body = a;
-    contact.other = b;
-  }
-  const double weight = of_a.share * of_b.share;
-  contact.weight += weight;
-  for (int c = 0; c < 2; ++c) contact.place[c] += weight * (all.state[a].centre[c] + of_a.arm[c]);
-}
-
-/// Places and normals of the contacts of bodies with each other: along the line of their centres.
-inline void finish_overlaps(const BodiesView& all) {
-  for (int k = 0; k < *all.contact_count; ++k) {
-    Contact& contact = all.contacts[k];
-    const double *a = all.state[contact.body].centre, *b = all.state[contact.other].centre;
-    const double between = std::hypot(a[0] - b[0], a[1] - b[1]);
-    for (int c = 0; c < 2; ++c) {
-      contact.place[c] /= contact.weight;
-      contact.normal[c] = between > 0.0 ? (a[c] - b[c]) / between : 0.0;
-    }
-  }
-}
 
 /// Contacts of a body with a wall: its nearest place to either side of its centre, so that it can
 /// neither run into it nor turn into it.
@@ -105,10 +72,19 @@ inline void push(HeldBody& body, const double* arm, const Pair& impulse) {
 /// Impulses at contacts, by which no body runs into what it touches.
 inline void resolve_contacts(const View<double>& view, const StepInput& input) {
   const BodiesView& all = *view.bodies;
+  *all.contact_count = 0;
+  add_stone_contacts(view, input);
   for (int body = 0; body < all.count; ++body)
     for (const Side side : {Side::left, Side::right, Side::bottom, Side::top})
       add_wall_contacts(view, input, body, side);
+  for (int k = 0; k < *all.contact_count; ++k) {
+    const Contact& contact = all.contacts[k];
+    all.held[contact.body].touches = true;
+    if (contact.other >= 0) all.held[contact.other].touches = true;
+  }
   for (int sweep = 0; sweep < kContactSweeps; ++sweep) {
+    for (int body = 0; sweep > 0 && body < all.count; ++body)
+      if (all.held[body].touches && all.friction[body] >= 0.0) settle_nodes(all, body);
     for (int k = 0; k < *all.contact_count; ++k) {
       Contact& contact = all.contacts[k];
       HeldBody* bodies[2] = {&all.held[contact.body],

@@ -108,6 +108,7 @@ void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* led
     quad(g.momentum + 4 * node) = Quad{};
     quad(g.force + 4 * node) = Quad{};
     if (g.body != nullptr) quad(g.body + 4 * node) = Quad{};
+    if (g.soil != nullptr) quad(g.soil + 4 * node) = Quad{};
   };
   for_each_node(
       g, row,

@@ -57,9 +57,9 @@ class NodeSums {
 };
 
 /// Mass and momentum at the nodes (paper eq. 18-19), from weights at the points' present places.
-template <class Shape, class Real>
+template <class Shape, Need kNeed, class Real>
 void scatter_momentum(const View<Real>& view, int begin, int n,
-                      const Weights<Shape, Need::values>& weights) {
+                      const Weights<Shape, kNeed>& weights) {
   const Real* vx = view.points.vx + begin;
   const Real* vy = view.points.vy + begin;
   const Real* mass = view.points.mass + begin;
@@ -70,6 +70,28 @@ void scatter_momentum(const View<Real>& view, int begin, int n,
     nodes.add(
         Quad{m, m, m * vx[k], m * vy[k]}, [&](int i) { return weights.value_x(i, k); },
         [&](int j) { return weights.value_y(j, k); });
+  }
+}
+
+/// Volume at the nodes and its gradient times the cell size.
+template <class Shape, class Real>
+void scatter_soil(const View<Real>& view, int begin, int n,
+                  const Weights<Shape, Need::gradients>& weights) {
+  const Real* volume = view.points.volume + begin;
+  NodeSums<Shape> nodes(view.grid.soil, view.grid.stride);
+  for (int k = 0; k < n; ++k) {
+    nodes.move_to(weights.first[k]);
+    const double v = volume[k];
+    nodes.add(
+        Quad{v, v, v, 0.0},
+        [&](int i) {
+          const double* x = weights.pair_x(i, k);
+          return Quad{x[0], x[1], x[1], 0.0};
+        },
+        [&](int j) {
+          const double* y = weights.pair_y(j, k);
+          return Quad{y[0], y[1], y[0], 0.0};
+        });
   }
 }
 

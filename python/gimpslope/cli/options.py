@@ -8,7 +8,7 @@ from ..studies import reference
 
 
 def add_stone_model(parser: argparse._ActionsContainer) -> None:
-    """`--stone-model` and `--stone-modulus`, None where left out."""
+    """`--stone-model`, `--stone-modulus` and `--stone-friction`, None where left out."""
     parser.add_argument(
         "--stone-model",
         choices=list(reference.STONE_MODELS),
@@ -20,6 +20,13 @@ def add_stone_model(parser: argparse._ActionsContainer) -> None:
         type=float,
         metavar="PA",
         help="Young's modulus of the stones, Pa, in place of the model's",
+    )
+    parser.add_argument(
+        "--stone-friction",
+        type=float,
+        metavar="DEG",
+        help="angle of friction of rigid stones along soil and each other, degrees (default: soil "
+        "sticks to them)",
     )
 
 

@@ -86,6 +86,7 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         cell=options.cell,
         stone_model=options.stone_model or "deformable",
         stone_modulus=options.stone_modulus,
+        stone_friction=options.stone_friction,
         seeds=options.seed,
         duration=options.duration,
         time_step=options.time_step,

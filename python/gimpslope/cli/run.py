@@ -27,13 +27,14 @@ _OF_SLOPES: dict[str, Any] = {
     "seed": 1,
     "stone_model": "deformable",
     "stone_modulus": None,
+    "stone_friction": None,
     "time_step": None,
     "courant": None,
     "volumetric_strain": "point",
 }
 """Options that only the slopes of the study have, with their defaults."""
 
-_OF_STONES = {"seed", "stone_model", "stone_modulus"}
+_OF_STONES = {"seed", "stone_model", "stone_modulus", "stone_friction"}
 
 
 def add(commands: Commands) -> None:

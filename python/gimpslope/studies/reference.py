@@ -94,16 +94,21 @@ def soil(reading: str = "identified") -> DruckerPrager:
 
 
 def rock(
-    reading: str = "identified", model: str = "deformable", modulus: float | None = None
+    reading: str = "identified",
+    model: str = "deformable",
+    modulus: float | None = None,
+    friction: float | None = None,
 ) -> Material:
     """The stone of the paper's table 1, in one of `STONE_MODELS`, with another Young's modulus (Pa)
-    where one is given."""
+    where one is given; a rigid one with that angle of friction along soil (degrees)."""
     cone = _reading(reading).cone
     _check.one_of("stone_model", model, STONE_MODELS)
     if model == "rigid":
         if modulus is not None:
             raise ValueError(f"stone_modulus must be left out of rigid stones, got {modulus!r}")
-        return Rigid(_ROCK_DENSITY)
+        return Rigid(_ROCK_DENSITY, friction)
+    if friction is not None:
+        raise ValueError(f"stone_friction must be left out of stones not rigid, got {friction!r}")
     return DruckerPrager(
         density=_ROCK_DENSITY,
         young=STONE_MODULI[model] if modulus is None else modulus,
@@ -122,6 +127,7 @@ def slope(
     seed: int = 1,
     stone_model: str = "deformable",
     stone_modulus: float | None = None,
+    stone_friction: float | None = None,
 ) -> Scene:
     """One of the four slopes, 9 m high, 45 degrees: 23,490 points at 0.1 m.
 
@@ -133,6 +139,7 @@ def slope(
     seed : of the places and shapes of the stones
     stone_model : one of `STONE_MODELS`
     stone_modulus : Young's modulus of stones that are not rigid, Pa; None: that of the model
+    stone_friction : angle of friction of rigid stones along soil, degrees; None: soil sticks
     """
     _check.one_of("slope", name, tuple(SLOPES))
     walls = _reading(reading).walls
@@ -142,7 +149,7 @@ def slope(
         Outline.slope(),
         soil(reading),
         stones=reference_stones.stones(name, seed),
-        stone=rock(reading, stone_model, stone_modulus),
+        stone=rock(reading, stone_model, stone_modulus, stone_friction),
         cell=cell,
         walls=walls,
     )
@@ -179,6 +186,7 @@ def setup(
     seed: int = 1,
     stone_model: str = "deformable",
     stone_modulus: float | None = None,
+    stone_friction: float | None = None,
     courant: float | None = None,
     time_step: float | None = None,
     threads: int = 1,
@@ -194,6 +202,7 @@ def setup(
             seed=seed,
             stone_model=stone_model,
             stone_modulus=stone_modulus,
+            stone_friction=stone_friction,
         ),
         method(
             reading,

@@ -68,6 +68,7 @@ def plan(
     cell: float = CELL,
     stone_model: str = "deformable",
     stone_modulus: float | None = None,
+    stone_friction: float | None = None,
     seeds: Sequence[int] = SEEDS,
     duration: float = 10.0,
     time_step: float | None = None,
@@ -84,6 +85,7 @@ def plan(
     cell : side of a grid cell, m
     stone_model : one of `reference.STONE_MODELS`
     stone_modulus : Young's modulus of stones that are not rigid, Pa; None: that of the model
+    stone_friction : angle of friction of rigid stones along soil, degrees; None: soil sticks
     seeds : of the draws of stones, each another one
     duration : of the slides, s
     time_step : fixed, s; None: a Courant number of 0.4
@@ -117,6 +119,7 @@ def plan(
                     seed=seed,
                     stone_model=stone_model,
                     stone_modulus=stone_modulus,
+                    stone_friction=stone_friction,
                     time_step=time_step,
                 )
                 _check_step(setup)

@@ -1,0 +1,139 @@
+// Where rigid bodies meet each other: points of one that are as near those of the other as both are
+// wide, with the normal of the line that parts the two best.
+#pragma once
+
+#include <cmath>
+
+#include "../view.hpp"
+#include "body_terms.hpp"
+
+namespace gimpslope {
+inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+constexpr double kSeen = 0.1;      // gap at which a contact begins to be watched, cells
+constexpr double kSurround = 1.5;  // distance of the points that tell a normal, cells
+constexpr int kMostSupports = 20;
+
+/// Some points of a body.
+struct Crowd {
+  double *x, *y, *half;
+  int count = 0;
+
+  /// The point that lies farthest along a direction, among those within `reach` of a place.
+  int farthest(const Pair& direction, const Pair& place, double reach) const {
+    int best = -1;
+    double most = 0.0;
+    for (int k = 0; k < count; ++k) {
+      const double dx = x[k] - place[0], dy = y[k] - place[1];
+      const double along = dx * direction[0] + dy * direction[1];
+      if (dx * dx + dy * dy > reach * reach || (best >= 0 && along <= most)) continue;
+      best = k;
+      most = along;
+    }
+    return best;
+  }
+  Pair at(int k) const { return {x[k], y[k]}; }
+};
+
+/// Points of a body within a distance of a place, in the order in which they were given.
+inline void gather_crowd(const View<double>& view, int body, const double* place, double within,
+                         Crowd& crowd) {
+  const BodiesView& all = *view.bodies;
+  crowd.count = 0;
+  for (int k = all.begin[body]; k < all.begin[body + 1]; ++k) {
+    const int m = all.member[k];
+    const double dx = view.points.x[m] - place[0], dy = view.points.y[m] - place[1];
+    if (dx * dx + dy * dy > within * within) continue;
+    crowd.x[crowd.count] = view.points.x[m];
+    crowd.y[crowd.count] = view.points.y[m];
+    crowd.half[crowd.count] = std::sqrt(all.half_length[0][k] * all.half_length[1][k]);
+    ++crowd.count;
+  }
+}
+
+/// The place nearest to the origin on the line from p to q.
+inline Pair nearest_on(const Pair& p, const Pair& q) {
+  const Pair along = q - p;
+  const double square = along.square().sum();
+  const double t = square > 0.0 ? -(p * along).sum() / square : 0.0;
+  return p + (t < 0.0 ? 0.0 : (t > 1.0 ? 1.0 : t)) * along;
+}
+
+/// From b to a, the shortest line between the convex hulls of the points of both around a place
+/// (Gilbert, Johnson and Keerthi 1988), which is normal to the line that parts them with the widest
+/// margin; zero where they overlap. Starts with a line between two of them.
+inline Pair shortest_between(const Crowd& a, const Crowd& b, const Pair& place, double reach,
+                             Pair line) {
+  Pair first = line, second = line;
+  for (int support = 0; support < kMostSupports; ++support) {
+    const Pair tip = a.at(a.farthest(-line, place, reach)) - b.at(b.farthest(line, place, reach));
+    const double square = line.square().sum();
+    if (square - (line * tip).sum() <= 1e-12 * square) return line;
+    const Pair one = nearest_on(first, tip), other = nearest_on(second, tip);
+    const bool take_first = one.square().sum() <= other.square().sum();
+    (take_first ? second : first) = tip;
+    line = take_first ? one : other;
+  }
+  return Pair::Zero();
+}
+
+/// Contacts of two bodies: at each point of the first that nearly touches one of the second.
+inline void meet(const View<double>& view, const StepInput& input, int body, int other, Crowd& a,
+                 Crowd& b) {
+  const BodiesView& all = *view.bodies;
+  const double seen = kSeen * view.grid.cell, reach = kSurround * view.grid.cell;
+  const double *centre = all.state[body].centre, *opposite = all.state[other].centre;
+  if (std::hypot(centre[0] - opposite[0], centre[1] - opposite[1]) >
+      all.radius[body] + all.radius[other] + seen)
+    return;
+  gather_crowd(view, body, opposite, all.radius[other] + reach, a);
+  gather_crowd(view, other, centre, all.radius[body] + reach, b);
+  for (int k = 0; k < a.count; ++k) {
+    int nearest = -1;
+    double least = 0.0;
+    for (int i = 0; i < b.count; ++i) {
+      const double dx = a.x[k] - b.x[i], dy = a.y[k] - b.y[i], square = dx * dx + dy * dy;
+      if (nearest >= 0 && square >= least) continue;
+      nearest = i;
+      least = square;
+    }
+    if (nearest < 0) continue;
+    const double both = a.half[k] + b.half[nearest];
+    if (least > (both + seen) * (both + seen) + both * both) continue;
+    const Pair between = a.at(k) - b.at(nearest), place = 0.5 * (a.at(k) + b.at(nearest));
+    Pair line = shortest_between(a, b, place, reach, between);
+    if (line.square().sum() == 0.0) line = Pair(centre[0] - opposite[0], centre[1] - opposite[1]);
+    const double length = std::hypot(line[0], line[1]);
+    if (length == 0.0) continue;
+    const Pair normal = (1.0 / length) * line;
+    const double gap = (between * normal).sum() - both;
+    const double aside = std::fabs(between[1] * normal[0] - between[0] * normal[1]);
+    if (gap > seen || aside > both) continue;
+    if (*all.contact_count == all.contact_room) {
+      *all.contacts_missed = true;
+      return;
+    }
+    Contact& contact = all.contacts[(*all.contact_count)++];
+    contact = {};
+    contact.body = body;
+    contact.other = other;
+    set(contact.normal, normal);
+    set(contact.place, place);
+    contact.closing = gap > 0.0 ? gap / input.dt : 0.0;  // not thrown apart
+    const double mine = all.mutual_friction[body], its = all.mutual_friction[other];
+    contact.friction = mine < its ? mine : its;
+  }
+}
+
+/// Contacts of all bodies with each other.
+inline void add_stone_contacts(const View<double>& view, const StepInput& input) {
+  const BodiesView& all = *view.bodies;
+  double* room[6];
+  for (int k = 0; k < 6; ++k) room[k] = all.near + static_cast<std::ptrdiff_t>(k) * all.near_room;
+  Crowd a{room[0], room[1], room[2]}, b{room[3], room[4], room[5]};
+  for (int k = 0; k < all.pair_count; ++k)
+    meet(view, input, all.pairs[2 * k], all.pairs[2 * k + 1], a, b);
+}
+
+}  // namespace GIMPSLOPE_INSTRUCTION_SET
+}  // namespace gimpslope

@@ -1,0 +1,143 @@
+"""Soil that may slide along a rigid stone: Coulomb friction without tension at nodes it holds."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bodies import Body, Whole, cross, quarter_turn
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+TOUCH = 0.1  # largest gap, cells
+NO_SLOPE = 1e-3
+SETTLINGS = 20
+APART, SLIPPING, STUCK, WELDED = range(4)
+
+
+@dataclass
+class Face:
+    """At each node: the normal of a stone's surface (n_nodes, 2), whether there is one, and whether
+    soil and stone touch there."""
+
+    normal: Array
+    known: Mask
+    touching: Mask
+
+
+def face(stone: tuple[Array, Array], soil: tuple[Array, Array]) -> Face:
+    """From the shares (n_nodes,) of the nodes' cells that stone and soil fill, and their gradients
+    a cell (n_nodes, 2): the normal down the steeper one of both (Nairn 2013)."""
+    downhill = np.array([-stone[1], soil[1]])  # from the stone into the soil
+    steep = np.hypot(downhill[..., 0], downhill[..., 1])
+    steepest = steep.max(axis=0)
+    known = steepest > NO_SLOPE
+    chosen = np.where((steep[1] > steep[0])[:, None], downhill[1], downhill[0])
+    normal = chosen / np.where(known, steepest, 1.0)[:, None]
+    gap = sum(
+        beyond_edge(share, (slope * normal).sum(axis=1))
+        for share, slope in zip((stone[0], soil[0]), downhill, strict=True)
+    )
+    return Face(normal, known, ~known | (gap <= TOUCH))
+
+
+def beyond_edge(share: Array, slope: Array) -> Array:
+    """Distance (n,) in cells from a node to the edge of a half-plane with that share of the node's
+    cell and that slope: the root of (share of a half-plane) / (its slope) = share / slope."""
+    ratio = share / np.where(slope > NO_SLOPE, slope, 1.0)
+    outside = 1 - 2 * ratio
+    inside = np.sqrt(ratio**2 + 2) - ratio - 1
+    found = np.where(ratio <= 0.5, outside, inside)
+    return np.asarray(np.where(slope > NO_SLOPE, found, np.where(share > 0.5, -1.0, 1.0)))
+
+
+def before_strain(meeting: Array, normal: Array, soil: Array, stone: Array) -> Array:
+    """Velocities (k, 2) of soil that touches the stone, which has velocities of its own there: not
+    into it, nor off it or along it where it was held so in the step before."""
+    off = np.sum((soil - stone) * normal, axis=1)
+    across = quarter_turn(normal)
+    along = np.sum((soil - stone) * across, axis=1)
+    v = soil - np.where((meeting != APART) | (off < 0), off, 0.0)[:, None] * normal
+    v = v - np.where(meeting == STUCK, along, 0.0)[:, None] * across
+    return np.where((meeting == WELDED)[:, None], stone, v)
+
+
+class Interface:
+    """A stone and the k nodes of soil around it: place (k, 2), normal, meeting (k,), mass (k,), and
+    the velocity (k, 2) that the soil has without the stone."""
+
+    def __init__(
+        self,
+        body: Body,
+        whole: Whole,
+        place: Array,
+        normal: Array,
+        meeting: Array,
+        mass: Array,
+        free: Array,
+    ) -> None:
+        self.body, self.whole = body, whole
+        self.normal, self.meeting, self.mass, self.free = normal, meeting.copy(), mass, free
+        arm = place - body.centre
+        self.place = place
+        self.motion_at = np.zeros((len(place), 2, 3))  # velocity there from (vx, vy, spin)
+        self.motion_at[:, 0, 0] = self.motion_at[:, 1, 1] = 1.0
+        self.motion_at[:, :, 2] = quarter_turn(arm)
+        self.inertia = np.diag([body.mass, body.mass, body.inertia])
+        self.taken = np.zeros((len(place), 2))
+        self.settle()
+
+    def settle(self) -> None:
+        """The impulses that the soil takes, for the present motion of the whole with those that it
+        has taken so far: by Newton's method on a function that is linear for given meetings."""
+        motion = np.append(self.whole.velocity, self.whole.spin)
+        alone = motion + np.linalg.solve(self.inertia, self._sum(self.taken))
+        for settling in range(SETTLINGS):
+            apart = self.free - self.motion_at @ motion
+            meeting = self._meeting(apart)
+            settled = settling > 0 and bool((meeting == self.meeting).all())
+            self.meeting = meeting
+            answer = self._answer(apart)
+            self.taken = -np.einsum("kij,kj->ki", answer, apart)
+            if settled:
+                break
+            matrix = self.inertia + np.einsum(
+                "kia,kij,kjb->ab", self.motion_at, answer, self.motion_at
+            )
+            given = self.inertia @ alone + self._sum(np.einsum("kij,kj->ki", answer, self.free))
+            motion = np.linalg.solve(matrix, given)
+        motion = alone - np.linalg.solve(self.inertia, self._sum(self.taken))
+        self.whole.velocity, self.whole.spin = motion[:2], float(motion[2])
+
+    def velocity(self) -> Array:
+        """Of the soil after the impulses, (k, 2)."""
+        return np.asarray(self.free + self.taken / self.mass[:, None])
+
+    def rubbed(self, before: Array, after: Array, stone_before: Array) -> float:
+        """What friction takes, J/m: its impulse times the mean slip, along the surface."""
+        across = quarter_turn(self.normal)
+        slip = (before + after - stone_before - self.whole.velocity_at(self.place)) / 2
+        work = -np.sum(self.taken * across, axis=1) * np.sum(slip * across, axis=1)
+        return float(work[self.meeting == SLIPPING].sum())
+
+    def _sum(self, impulses: Array) -> Array:
+        return np.asarray(np.einsum("kia,ki->a", self.motion_at, impulses))
+
+    def _meeting(self, apart: Array) -> Array:
+        into = -np.sum(apart * self.normal, axis=1)
+        along = np.abs(cross(self.normal, apart))
+        rough = self.body.friction
+        assert rough is not None
+        met = np.where(into <= 0, APART, np.where(along > rough * into, SLIPPING, STUCK))
+        return np.asarray(np.where(self.meeting == WELDED, WELDED, met))
+
+    def _answer(self, apart: Array) -> Array:
+        """The matrices (k, 2, 2) that turn the approach of the soil into the impulse it takes."""
+        across, rough = quarter_turn(self.normal), self.body.friction
+        assert rough is not None
+        pushed = self.normal - np.sign(cross(self.normal, apart))[:, None] * rough * across
+        slipping = np.einsum("ki,kj->kij", pushed, self.normal)
+        factor = np.where((self.meeting == SLIPPING)[:, None, None], slipping, np.eye(2))
+        factor = np.where((self.meeting == APART)[:, None, None], 0.0, factor)
+        return np.asarray(self.mass[:, None, None] * factor)
