@@ -15,6 +15,7 @@ import pytest
 
 import gimpslope as gs
 from gimpslope import cli
+from gimpslope.simulation import NotSettledError
 from gimpslope.studies import converge, planned, reference, reference_stones
 from gimpslope.studies.converge.quantities import measure
 from gimpslope.studies.converge.surfaces import distance, heights
@@ -232,6 +233,23 @@ def test_what_is_known_is_told_after_each_run(tmp_path: Path) -> None:
         "soil_identified_2.h5: not run yet",
         "soil_identified_1.h5: not run yet",
     )
+
+
+def test_pages_and_pictures_are_made_though_no_run_reaches_its_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def never(one: planned.Planned, *, progress: bool = True) -> gs.Run:
+        raise NotSettledError("it moves")
+
+    monkeypatch.setattr(planned.Planned, "run", never)
+    words = "converge round --reading identified --stone-model rigid --quiet --output"
+    assert cli.main([*words.split(), str(tmp_path)]) == 1
+    assert "missing round_identified_rigid_1_0.05.h5: it moves" in capsys.readouterr().err
+    assert "round_identified_rigid_1_0.2.h5: it moves;" in (tmp_path / "convergence.md").read_text()
+    assert {file.name for file in tmp_path.iterdir()} == {
+        *("convergence.md", "convergence.json"),
+        *("round_identified_values.png", "round_identified_costs.png"),
+    }
 
 
 def test_defaults(tmp_path: Path) -> None:
