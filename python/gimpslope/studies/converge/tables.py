@@ -24,11 +24,11 @@ EXPLANATION = (
     "sign. What the last three grids do follows: *converges* with an order between 0.5 and 2.1, "
     "and then the limit by Richardson's extrapolation with its uncertainty (1.25 times the "
     "extrapolated difference); *order not settled* outside of that (three times the spread); "
-    "*oscillates*; or *diverges*, the last change being the larger one. *Errors* are parts of the "
-    "limit on each grid: of the model's own, or of the surest of those that agree with it; where a "
-    "model has none, of the surest of the other models. *Not reached*: the kinetic energy still "
-    "grows in the end, or the slope has not come to rest. Shares are parts of the drop in "
-    "potential energy.\n"
+    "*oscillates*; or *diverges*, the last change being the larger one; *too few grids* where not "
+    "all of the three finest have a value. *Errors* are parts of the limit on each grid: of the "
+    "model's own, or of the surest of those that agree with it; where a model has none, of the "
+    "surest of the other models. *Not reached*: the kinetic energy still grows in the end, or the "
+    "slope has not come to rest. Shares are parts of the drop in potential energy.\n"
 )
 _OF_STONES = (
     "Means over draws of the stones, ±: one standard deviation between draws. Each draw has the "
