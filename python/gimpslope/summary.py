@@ -57,7 +57,7 @@ def summarise(run: Run) -> dict[str, float | int | None]:
         "steps": _steps(rows["step"]),
         "steps_before_slide": _steps(rows["step"][rows["stage"] < hdf5.STAGES.index("slide")]),
         "stones": len(run.scene.stones),
-        "smallest_gap_in_cells": _smallest_gap(run.scene),
+        "smallest_gap_in_cells": smallest_gap(run.scene),
         **_energy_summary(run.energy),
         **_displacement_summary(run),
         **_speed_of_computing(run.attributes.get("timing")),
@@ -75,7 +75,8 @@ def _steps(column: npt.NDArray[np.int64]) -> int:
     return int(ends.sum())
 
 
-def _smallest_gap(scene: Scene) -> float | None:
+def smallest_gap(scene: Scene) -> float | None:
+    """Between the two nearest stones, in cells; None without two."""
     gaps = Stones(scene.stones).gaps()
     return float(gaps.min()) / scene.cell if len(gaps) > 1 else None
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from gimpslope.studies.richardson import extrapolate
+from gimpslope.studies.richardson import extrapolate, extrapolate_means
 
 CELLS = np.array([0.4, 0.2, 0.1, 0.05])
 
@@ -54,3 +54,20 @@ def test_results_that_agree_have_converged() -> None:
 def test_refused() -> None:
     with pytest.raises(ValueError, match=r"values must be of at least three grids, got 2"):
         extrapolate((1.0, 2.0))
+
+
+def test_means_over_draws() -> None:
+    """Of the finest grids in a row on which all draws have a value."""
+    mean = 7.0 + CELLS
+    draws = np.stack([mean - 1, mean + 1], axis=1)
+    expected = extrapolate(mean[1:])
+    draws[0, 1] = math.nan
+    found = extrapolate_means(draws)
+    assert found is not None and found.orders == pytest.approx(expected.orders)
+    assert found.limit == pytest.approx(7.0)
+    draws[1, 0] = math.nan
+    assert extrapolate_means(draws) is None
+    assert extrapolate_means(np.full((4, 2), math.nan)) is None
+    draws = np.stack([mean, mean], axis=1)
+    draws[-1, 0] = math.nan
+    assert extrapolate_means(draws) is None

@@ -6,14 +6,18 @@ import argparse
 
 from ..studies import reference
 
+_MODELS = (
+    "deformable: 20e9 Pa, the paper's (the default); softened: 0.5e9 Pa, a sixth of the steps; "
+    "rigid: each stone moves as one, the steps of soil alone"
+)
+
 
 def add_stone_model(parser: argparse._ActionsContainer) -> None:
     """`--stone-model`, `--stone-modulus` and `--stone-friction`, None where left out."""
     parser.add_argument(
         "--stone-model",
         choices=list(reference.STONE_MODELS),
-        help="deformable: 20e9 Pa, the paper's (the default); softened: 0.5e9 Pa, a sixth of the "
-        "steps; rigid: each stone moves as one, the steps of soil alone",
+        help=_MODELS,
     )
     parser.add_argument(
         "--stone-modulus",
@@ -27,6 +31,13 @@ def add_stone_model(parser: argparse._ActionsContainer) -> None:
         metavar="DEG",
         help="angle of friction of rigid stones along soil and each other, degrees (default: soil "
         "sticks to them)",
+    )
+
+
+def add_stone_models(parser: argparse.ArgumentParser) -> None:
+    """`--stone-model`, one or more; None where left out."""
+    parser.add_argument(
+        "--stone-model", nargs="+", choices=list(reference.STONE_MODELS), help=_MODELS
     )
 
 

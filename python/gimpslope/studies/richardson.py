@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import pairwise, takewhile
 from typing import Literal
 
 import numpy as np
 
 from .. import _check
+from .._check import FloatArray
 
 Behaviour = Literal["converges", "order not settled", "oscillates", "diverges"]
 
@@ -77,6 +78,15 @@ def extrapolate(values: Sequence[float]) -> Extrapolation:
     # A low order throws the limit far off, a high one flatters: the methods' own are one to two.
     correction = last / (2 ** (1 if order < 1 else 2) - 1)
     return Extrapolation(orders, finest + correction, _CAUTION * spread, "order not settled")
+
+
+def extrapolate_means(draws: FloatArray) -> Extrapolation | None:
+    """The limit of the means over draws, shape (grids, draws), from coarse to fine: of the finest
+    grids in a row on which all draws have a value (the others have NaN); None if these are fewer
+    than three, or the finest grid of all is not among them."""
+    means = [float(mean) for mean in draws.mean(axis=1)]
+    last = list(takewhile(math.isfinite, reversed(means)))[::-1]
+    return extrapolate(last) if len(last) >= 3 else None
 
 
 def _order(change: float, next_change: float) -> float:

@@ -24,6 +24,9 @@ NEAR, FAR = 2.0, 4.0
 BOTTOM = 2.0
 """Height of the bottom of the slope, m."""
 
+RUN_OUT = 99.0
+"""Share of the mass whose front tells the run-out, %."""
+
 _BANDS = {"early": 1.0, "late": 5.0}  # s, of the paper's maps of the plastic zone
 _BEHIND = 75.0  # % of the mass behind the front
 _STUCK = 1.0  # m from the left side
@@ -172,7 +175,7 @@ def _in_the_end(run: Run, *, reached: bool) -> dict[str, float]:
         *run.max_displacement(),
         _share(end, _moved(end) < NEAR),
         far_front(end),
-        run.run_out(percentile=99.0),
+        run.run_out(percentile=RUN_OUT),
         _roughness(run),
     )
     return dict(zip(_END, found, strict=True))

@@ -101,16 +101,13 @@ def plan(
     FileExistsError
         If a file of those names holds something else and may not be replaced.
     """
-    if not seeds or len(set(seeds)) < len(seeds):
-        raise ValueError(f"seeds must be one or more different numbers, got {list(seeds)}")
-    for seed in seeds:
-        _check.whole("seed", seed, 0)
+    seeds = check_seeds(seeds)
 
     def slope(reading: str, name: str, side: float, draws: Sequence[int]) -> Slope:
         drawn = tuple(draws) if name != SOIL else (draws[0],)
         runs = []
         for seed in drawn:
-            with _named(f"slope {name}, cell {side:g} m"):
+            with named(f"slope {name}, cell {side:g} m"):
                 setup = reference.setup(
                     name,
                     reading=reading,
@@ -140,8 +137,16 @@ def plan(
     )
 
 
+def check_seeds(seeds: Sequence[int]) -> tuple[int, ...]:
+    """Seeds as numbers; raises `TypeError` or `ValueError` unless they are one or more different
+    whole numbers >= 0."""
+    if not seeds or len(set(seeds)) < len(seeds):
+        raise ValueError(f"seeds must be one or more different numbers, got {list(seeds)}")
+    return tuple(_check.whole("seed", seed, 0) for seed in seeds)
+
+
 @contextmanager
-def _named(slope: str) -> Iterator[None]:
+def named(slope: str) -> Iterator[None]:
     """Refusals say which slope they are of."""
     try:
         yield

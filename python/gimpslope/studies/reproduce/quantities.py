@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from .. import reference
+from .measures import RUN_OUT
 
 
 class Quantity(NamedTuple):
@@ -61,7 +62,7 @@ QUANTITIES = (
         "horizontal", "largest horizontal displacement", "m", 2, "max_displacement_horizontal"
     ),
     Quantity("vertical", "largest vertical displacement", "m", 2, "max_displacement_vertical"),
-    Quantity("run_out", "run-out of 99 % of the mass", "m", 2),
+    Quantity("run_out", f"run-out of {RUN_OUT:g} % of the mass", "m", 2),
     Quantity("plastic_soil", "share of the soil that is plastic", "", 3),
     Quantity("peak_bands", "plastic bands at the peak", "", 0, counted=True),
     Quantity("roughness", "roughness of the surface", "mm", 0),

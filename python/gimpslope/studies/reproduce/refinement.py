@@ -20,7 +20,7 @@ from matplotlib.figure import Figure
 from ..._check import FloatArray
 from ...figures.grids import against_cell
 from .. import reference
-from ..richardson import Extrapolation, extrapolate
+from ..richardson import Extrapolation, extrapolate_means
 from .claims import judge
 from .judging import DOES_NOT, HOLDS, NOT_REACHED, NOT_RUN, Draws
 from .quantities import QUANTITIES
@@ -74,9 +74,8 @@ class Refinement:
         )
 
     def limit(self, slope: str, figure: str) -> Extrapolation | None:
-        """What the mean over the draws does as the cell shrinks; None where a grid has none."""
-        means = self.values(slope, figure).mean(axis=1)
-        return extrapolate(means.tolist()) if np.isfinite(means).all() else None
+        """What the mean over the draws does as the cell shrinks, as `extrapolate_means` says."""
+        return extrapolate_means(self.values(slope, figure))
 
 
 def refinement(grids: Mapping[float, Draws], gaps: Gaps, spread: Mapping[str, float]) -> Refinement:
@@ -124,8 +123,8 @@ def figure(found: Refinement) -> Figure:
         values = {title: found.values(slope, quantity.figure) for slope, title in titles.items()}
         paper = {title: quantity.paper(slope) for slope, title in titles.items()}
         paper = {title: value for title, value in paper.items() if not math.isnan(value)}
-        lines = {"bounds" if quantity.is_bound else "reference": paper}
-        against_cell(tuple(found.grids), values, ax, **lines)
+        published, bounds = ({}, paper) if quantity.is_bound else (paper, {})
+        against_cell(tuple(found.grids), values, ax, reference=published, bounds=bounds)
         ax.set_title(quantity.label, fontsize="medium")
         if ax not in axes[-1]:
             ax.set_xlabel("")

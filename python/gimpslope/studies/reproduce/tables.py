@@ -26,7 +26,7 @@ def comparison(studies: Sequence[Study]) -> str:
             row = [reference.title(name), quantity.label, quantity.shown_paper(name)]
             for one in studies:
                 values = np.array([getattr(draw, quantity.figure) for draw in one.measures[name]])
-                row += [_shown(values, quantity), _difference(values.mean(), quantity, name)]
+                row += [shown(values, quantity), _difference(values.mean(), quantity, name)]
             rows.append(row)
     return table(head, rows)
 
@@ -59,7 +59,7 @@ def grids(found: Refinement) -> str:
     for name in found.slopes:
         for quantity in QUANTITIES:
             row = [reference.title(name), quantity.label, quantity.shown_paper(name)]
-            row += [_shown(draws, quantity) for draws in found.values(name, quantity.figure)]
+            row += [shown(draws, quantity) for draws in found.values(name, quantity.figure)]
             rows.append([*row, _limit(found, name, quantity)])
         if name in found.gaps:
             gaps = [", ".join(f"{gap:.2f}" for gap in draws) for draws in found.gaps[name]]
@@ -72,7 +72,7 @@ def _with_figures(verdict: str, figures: str) -> str:
     return f"**{verdict}**: {figures}" if figures else f"**{verdict}**"
 
 
-def _shown(draws: FloatArray, quantity: Quantity) -> str:
+def shown(draws: FloatArray, quantity: Quantity) -> str:
     """The mean over the draws, and their standard deviation where there are several."""
     mean = float(draws.mean())
     if len(draws) < 2 or np.isnan(mean):
