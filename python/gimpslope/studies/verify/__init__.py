@@ -25,6 +25,7 @@ NAMES = (
     "aluminium_bars",
     "column_collapse",
     "footing",
+    "pushed_disk",
     "safety_factor",
 )
 """All problems: elastic ones first, then plastic and frictional ones."""
