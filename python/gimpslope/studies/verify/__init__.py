@@ -17,6 +17,7 @@ NAMES = (
     "shear",
     "wave",
     "disks",
+    "inclusion",
     "cantilever",
     "translation",
     "biaxial",
