@@ -117,7 +117,7 @@ def check_limits(
                 exact,
                 load,
                 exact,
-                exact * (1 + 2 * (disk.reach + 0.5) / count),
+                widest(disk, count),
                 "a mechanism on a grid is an upper bound; as wide as it may act by where it slips",
                 order,
             ),
@@ -133,9 +133,20 @@ def check_limits(
     return checks
 
 
+def widest(disk: Disk, count: int) -> float:
+    """Load / (c D) of a disk that slips half a cell outside of the farthest nodes it moves."""
+    return factor(disk.roughness) * (1 + 2 * (disk.reach + 0.5) / count)
+
+
 def check_locking(disk: Disk, count: int, cured: Push, locked: Push) -> list[Check]:
     at = f"{disk.label}, h = D/{count}"
     return [
+        Check.at_least(
+            f"{at}: load / (c D), point",
+            bound=widest(disk, count),
+            got=locked.limit,
+            why="locks: above any limit load, that of the disk as wide as it may act included",
+        ),
         Check.at_most(
             f"{at}: gain of the load in the last third, cell average, share",
             bound=0.01,
@@ -250,7 +261,8 @@ def draw(
         grids.fill_between(
             cells, low, high, color=colour, alpha=0.2, linewidth=0, label=f"{disk.label}, expected"
         )
-    curve.axhline(factor(1.0), color="k", linewidth=0.8, label="exact")
+    for exact in {factor(disk.roughness) for disk in DISKS}:
+        curve.axhline(exact, color="k", linewidth=0.8, label=f"exact, {exact:.2f}")
     curve.set(xlabel="path (mm)", ylabel="load / (c D)", xlim=(0, None), ylim=(0, None))
     curve.set_title(f"h = D/{counts[-1]}")
     curve.legend(loc="lower right", fontsize="small")
