@@ -85,7 +85,12 @@ def test_solutions_for_a_rigid_disk_agree(radius: float) -> None:
 
 def pushed_in_a_box(stone: gs.Material, cells: int, radius: float) -> float:
     """Displacement at rest of a disk in the middle of a box of soil, half of which is so many cells
-    wide, less the exact one, as a share of that."""
+    wide, less the exact one, as a share of that.
+
+    By Clapeyron: twice the elastic energy over the force. Kinetic damping stops all at once, so
+    that the last step of each swing moves the points but does not strain them: they end up to 4 %
+    farther than the stresses say, with a quarter of the step up to 1 %.
+    """
     cell = BOX / cells
     place = rectangle(2 * BOX, 2 * BOX, cell / 2)
     inside = np.hypot(*(place - BOX).T) < radius
@@ -105,7 +110,7 @@ def pushed_in_a_box(stone: gs.Material, cells: int, radius: float) -> float:
     solver.body_force = np.where(of[:, None], [FORCE / solver.mass[of].sum(), 0.0], 0.0)
     solver.set_damping(kinetic=True)
     solver.advance_to(0.2 if isinstance(stone, gs.Rigid) else 0.5)
-    moved = solver.position[of].mean(axis=0)[0] - given.position[of].mean(axis=0)[0]
+    moved = 2 * solver.energies().elastic / FORCE
     return float(moved / displacement_in_box(radius, square()) - 1)
 
 
@@ -116,18 +121,19 @@ STIFF_AND_HEAVY = gs.Elastic(2e5, 2e8, 0.3)
 @pytest.mark.parametrize("radius", [0.3, 0.4])
 def test_pushed_in_soil_it_nears_the_exact_displacement(radius: float) -> None:
     """A stiff stone in the field of the soil is half a cell too large: with ten and twenty cells to
-    a wall, and three and six to the radius, 7.3 and 3.8 % too little, 9.5 and 4.4 % at 0.4 m. A
-    rigid one in a field of its own moves by 4.5 and -0.9 % too much, and -2.0 and -2.2 %."""
+    a wall, and three and six to the radius, 8.5 and 4.4 % too little, 10.5 and 4.9 % at 0.4 m. A
+    rigid one in a field of its own moves by 1.7 % too much and 2.3 % too little, and by 6.3 and
+    4.4 % too little."""
     rigid = [pushed_in_a_box(gs.Rigid(2000.0), cells, radius) for cells in (10, 20)]
     stiff = [pushed_in_a_box(STIFF_AND_HEAVY, cells, radius) for cells in (10, 20)]
-    assert abs(rigid[0]) < 0.05 and abs(rigid[1]) < 0.025
-    assert -0.11 < stiff[0] < -0.06 and -0.05 < stiff[1] < -0.03
+    assert abs(rigid[0]) < 0.07 and abs(rigid[1]) < 0.05
+    assert -0.12 < stiff[0] < -0.07 and -0.055 < stiff[1] < -0.035
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("radius", [0.3, 0.4])
 def test_pushed_in_soil_on_a_fine_grid(radius: float) -> None:
-    """Forty cells to a wall: 0.2 % too little; a stiff stone in the field of the soil 1.7 and
-    2.4 %."""
-    assert abs(pushed_in_a_box(gs.Rigid(2000.0), 40, radius)) < 0.005
-    assert -0.03 < pushed_in_a_box(STIFF_AND_HEAVY, 40, radius) < -0.01
+    """Forty cells to a wall: 1.0 and 1.3 % too little; a stiff stone in the field of the soil 2.0
+    and 2.7 %."""
+    assert abs(pushed_in_a_box(gs.Rigid(2000.0), 40, radius)) < 0.015
+    assert -0.03 < pushed_in_a_box(STIFF_AND_HEAVY, 40, radius) < -0.015

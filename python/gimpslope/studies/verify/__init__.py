@@ -17,6 +17,7 @@ NAMES = (
     "shear",
     "wave",
     "disks",
+    "inclusion",
     "cantilever",
     "translation",
     "biaxial",
@@ -25,6 +26,7 @@ NAMES = (
     "aluminium_bars",
     "column_collapse",
     "footing",
+    "pushed_disk",
     "safety_factor",
 )
 """All problems: elastic ones first, then plastic and frictional ones."""
