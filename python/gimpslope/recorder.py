@@ -98,7 +98,7 @@ class Recorder:
         self._bar = tqdm(
             total=duration,
             desc=f"{stage:8}",
-            disable=not self._progress,
+            disable=not self._progress or duration == 0,
             bar_format=_OPEN_BAR if stage == "settling" else _BAR,
         )
         self._stage_start = self._solver.time

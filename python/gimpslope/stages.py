@@ -54,7 +54,7 @@ class Settling(Record):
         for as long as a pressure wave needs to cross the scene twice
     limit : time allowed for it, s, > 0; a slope not at rest by then is an error
     damping : "kinetic" (all velocities are set to zero whenever the kinetic energy has passed
-        a peak; Cundall 1982) or "local" (each nodal force loses a share against the node's
+        a peak; Cundall 1976) or "local" (each nodal force loses a share against the node's
         velocity)
     coefficient : that share, in (0, 1), for "local" only; None there: 0.7
     unbalanced : sum of the sizes of the forces left at the nodes over the weight, in (0, 1), when

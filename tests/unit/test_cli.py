@@ -92,8 +92,19 @@ def test_progress_shows_time_speed_and_what_is_left(
 ) -> None:
     assert cli.main([word for word in COARSE if word != "--quiet"]) == 0
     shown = capsys.readouterr().err
-    for text in ("gravity", "settling", "slide", "of 0.20 s", "M point-steps/s", "<"):
+    for text in ("settling", "slide", "of 0.20 s", "M point-steps/s", "<"):
         assert text in shown
+    assert "gravity" not in shown  # applied at once
+
+
+def test_until_rest(undrawn: list[Any]) -> None:
+    assert cli.main([*COARSE, "--duration", "8", "--until-rest"]) == 0
+    run = gs.open("soil.h5")
+    assert run.stages == gs.Stages(slide=gs.Slide(8.0).until_rest())
+    assert "at rest" in run.status_detail and 3.0 < run.final.time < 8.0
+    Path("boulder.toml").write_text(SCENE)
+    assert cli.main(["run", "boulder.toml", "--quiet", "--until-rest"]) == 0
+    assert gs.open("boulder.h5").stages == gs.Stages(slide=gs.Slide(0.1).until_rest())
 
 
 @pytest.mark.parametrize(
@@ -253,6 +264,7 @@ def test_a_repetition_that_differs_says_so(
         ("run round --seed -1", "seed must be a whole number >= 0, got -1"),
         ("run round --stone-modulus 0", "young must be"),
         ("run made.h5 --output made.h5 --overwrite", "not the run to repeat"),
+        ("run made.h5 --until-rest", "--until-rest must be left out of a run to repeat"),
         ("run soil --output soil.txt", "--output must be a file that ends in .h5, got 'soil.txt'"),
         ("run cut.h5", "path must name a whole run file, got 'cut.h5', which is damaged"),
         ("export missing.h5 --vtu out", "missing.h5"),

@@ -110,6 +110,29 @@ def test_every_table(tmp_path: Path) -> None:
     assert setup_of(tmp_path, text, "cell = 0.2") == expected
 
 
+def test_stages_in_the_words_of_their_classes(tmp_path: Path) -> None:
+    text = (
+        SLOPE
+        + SOIL
+        + """
+    [stages.settling]
+    unbalanced = 1e-3
+    courant = 0.5
+    [stages.slide]
+    duration = 4
+    rest_ratio = 0.01
+    rest_time = 0.5
+    rest_change = 0.002
+    """
+    )
+    settling = gs.Settling(unbalanced=1e-3, courant=0.5)
+    assert setup_of(tmp_path, text).stages == gs.Stages(
+        settling=settling, slide=gs.Slide(4.0).until_rest()
+    )
+    loaded = SLOPE + SOIL + "[stages.gravity]\nramp = 0.5\n[stages.settling]\nratio = 1e-6\n"
+    assert setup_of(tmp_path, loaded).stages == gs.Stages(gs.Gravity(0.5), gs.Settling(1e-6))
+
+
 def test_stones_are_drawn_as_the_function_draws_them(tmp_path: Path) -> None:
     text = (
         SLOPE

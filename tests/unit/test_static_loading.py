@@ -132,14 +132,21 @@ def test_slides_from_a_static_solution_are_those_from_loading_in_time(
 @pytest.mark.parametrize("reading", list(reference.READINGS))
 @pytest.mark.parametrize("name", list(reference.SLOPES))
 def test_steps_before_the_slide(name: str, reading: str, tmp_path: Path) -> None:
-    """Prints steps and forces left; a static solution takes half of the steps or less."""
+    """Prints the steps of loading in time, of a static solution with as little force left, and of
+    the usual one. Both take half of the steps or less."""
     for model in ("deformable",) if name == "soil" else reference.STONE_MODELS:
         setup = reference.setup(name, reading=reading, cell=0.2, stone_model=model, duration=1e-6)
-        steps = []
-        for stages in (IN_TIME, gs.Stages()):
+
+        def load(stages: gs.Stages, setup: Setup = setup) -> tuple[int, float]:
             given = replace(setup, stages=replace(stages, slide=setup.stages.slide))
             run = given.simulate(tmp_path / "run.h5", overwrite=True, progress=False)
-            left = run.trigger["settling_unbalanced"]
-            steps.append(run.summary["steps_before_slide"])
-            print(f"{name} {model} {reading}: {steps[-1]:,} steps, {left:.1e} of the weight left")
-        assert steps[1] <= 0.55 * steps[0]
+            return run.summary["steps_before_slide"], run.trigger["settling_unbalanced"]
+
+        in_time, left = load(IN_TIME)
+        same, _ = load(gs.Stages(settling=gs.Settling(unbalanced=left)))
+        usual, usually_left = load(gs.Stages())
+        print(
+            f"{name:9} {model:10} {reading:10} {in_time:6,} steps and {left:.1e} of the weight, "
+            f"static {same:6,}; {usual:6,} to {usually_left:.1e}"
+        )
+        assert max(same, usual) <= 0.55 * in_time

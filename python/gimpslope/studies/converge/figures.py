@@ -54,7 +54,7 @@ def costs(study: Convergence) -> Figure:
         if not ax.lines:
             ax.text(0.5, 0.5, "no limit", transform=ax.transAxes, ha="center", va="center")
             ax.set(xticks=[], yticks=[])
-    grid_markers(made.axes[0], study.cells)
+    grid_markers(made.axes[-1], study.cells)
     _legend(made, columns=4)
     return made
 
