@@ -116,9 +116,9 @@ def check_limits(
                 f"{at}: load / (c D)",
                 exact,
                 load,
-                as_wide(disk, count, -0.5),
+                min(exact, as_wide(disk, count, -0.5)),
                 as_wide(disk, count, 0.5),
-                "that of a disk as wide as it may act by where it slips",
+                "from the exact disk to one as wide as it may act by where it slips",
                 order,
             ),
             Check.near(
