@@ -116,9 +116,9 @@ def check_limits(
                 f"{at}: load / (c D)",
                 exact,
                 load,
-                exact,
-                widest(disk, count),
-                "a mechanism on a grid is an upper bound; as wide as it may act by where it slips",
+                min(exact, as_wide(disk, count, -0.5)),
+                as_wide(disk, count, 0.5),
+                "from the exact disk to one as wide as it may act by where it slips",
                 order,
             ),
             Check.near(
@@ -133,9 +133,9 @@ def check_limits(
     return checks
 
 
-def widest(disk: Disk, count: int) -> float:
-    """Load / (c D) of a disk that slips half a cell outside of the farthest nodes it moves."""
-    return factor(disk.roughness) * (1 + 2 * (disk.reach + 0.5) / count)
+def as_wide(disk: Disk, count: int, side: float) -> float:
+    """Load / (c D) of a disk that acts wider by its reach and so many cells, on either side."""
+    return factor(disk.roughness) * (1 + 2 * (disk.reach + side) / count)
 
 
 def check_locking(disk: Disk, count: int, cured: Push, locked: Push) -> list[Check]:
@@ -143,7 +143,7 @@ def check_locking(disk: Disk, count: int, cured: Push, locked: Push) -> list[Che
     return [
         Check.at_least(
             f"{at}: load / (c D), point",
-            bound=widest(disk, count),
+            bound=as_wide(disk, count, 0.5),
             got=locked.limit,
             why="locks: above any limit load, that of the disk as wide as it may act included",
         ),
