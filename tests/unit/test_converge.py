@@ -263,6 +263,27 @@ def test_defaults(tmp_path: Path) -> None:
     assert not any(tmp_path.iterdir())
 
 
+def test_frictions_and_volume_strains_make_models(tmp_path: Path) -> None:
+    (made,) = converge.plan(
+        tmp_path,
+        slopes=["round"],
+        readings=["identified"],
+        stone_models=["rigid"],
+        stone_frictions=[22.0],
+        volumetric_strains=["point", "cell_average"],
+    )
+    assert list(made.planned) == [
+        "rigid",
+        "rigid, cell average",
+        "rigid, friction 22°",
+        "rigid, friction 22°, cell average",
+    ]
+    run = made.planned["rigid, friction 22°, cell average"][0][0]
+    assert run.path.name == "round_identified_rigid-22_cell-average_1_0.2.h5"
+    assert run.setup.scene.stone == gs.Rigid(2400, friction=22.0)
+    assert run.setup.method.volumetric_strain == "cell_average"
+
+
 @pytest.mark.parametrize("cells", [(0.4, 0.2), (0.4, 0.2, 0.15), (0.1, 0.2, 0.4)])
 def test_cells_refused(tmp_path: Path, cells: tuple[float, ...]) -> None:
     with pytest.raises(ValueError, match="cells must be three or more"):
@@ -274,6 +295,8 @@ def test_cells_refused(tmp_path: Path, cells: tuple[float, ...]) -> None:
     [
         ("--seed 1", "--seed must be left out for soil"),
         ("soil --stone-model rigid", "--stone-model must be left out for soil"),
+        ("soil --stone-friction 22", "--stone-friction must be left out for soil"),
+        ("round --duration 0", "duration must be"),
         ("square", "slope must be one of 'soil', 'arbitrary', 'round', 'oval'"),
         ("round --seed 1 1", "seeds must be one or more different numbers"),
         ("round --seed -1", "seed must be a whole number >= 0"),

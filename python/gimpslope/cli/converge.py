@@ -6,7 +6,9 @@ import argparse
 import os
 import sys
 from collections.abc import Callable
+from typing import get_args
 
+from ..method import VolumetricStrain
 from ..studies import converge, reference
 from ..studies.reproduce.judging import SOIL
 from .commands import Commands
@@ -32,6 +34,20 @@ def add(commands: Commands) -> None:
     add_readings(parser)
     add_stone_models(parser)
     parser.add_argument(
+        "--stone-friction",
+        type=float,
+        nargs="+",
+        metavar="DEG",
+        help="for each a further model: rigid stones that soil slides along",
+    )
+    parser.add_argument(
+        "--volumetric-strain",
+        nargs="+",
+        choices=get_args(VolumetricStrain),
+        default=["point"],
+        help="each model with each of them (default: point)",
+    )
+    parser.add_argument(
         "--seed", type=int, nargs="+", metavar="N", help="of the stones (default: 1)"
     )
     parser.add_argument(
@@ -41,6 +57,13 @@ def add(commands: Commands) -> None:
         metavar="H",
         help=f"m, each half of the one before (default: {_shown(converge.CELLS)}; with stones "
         f"{_shown(converge.CELLS_WITH_STONES)})",
+    )
+    parser.add_argument(
+        "--duration",
+        type=float,
+        default=converge.DURATION,
+        metavar="S",
+        help="of the slides, s (default: %(default)g)",
     )
     parser.add_argument("--threads", type=int, default=1, metavar="N", help="(default: 1)")
     parser.add_argument(
@@ -54,7 +77,11 @@ def add(commands: Commands) -> None:
 
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
     slopes = list(dict.fromkeys(options.slopes)) or [SOIL]
-    of_stones = {"--seed": options.seed, "--stone-model": options.stone_model}
+    of_stones = {
+        "--seed": options.seed,
+        "--stone-model": options.stone_model,
+        "--stone-friction": options.stone_friction,
+    }
     for name, given in of_stones.items():
         if slopes == [SOIL] and given is not None:
             raise ValueError(f"{name} must be left out for soil, which has no stones")
@@ -63,8 +90,11 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         slopes=slopes,
         readings=list(dict.fromkeys(options.reading)),
         stone_models=list(dict.fromkeys(options.stone_model or ["deformable"])),
+        stone_frictions=list(dict.fromkeys(options.stone_friction or [])),
+        volumetric_strains=list(dict.fromkeys(options.volumetric_strain)),
         seeds=options.seed or [1],
         cells=options.cells,
+        duration=options.duration,
         threads=options.threads,
         overwrite=options.overwrite,
     )

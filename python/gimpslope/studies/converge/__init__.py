@@ -6,13 +6,14 @@ cell; the viscosity of the velocity blend stays the same, which alpha a step wou
 """
 
 from .output import draw, write
-from .plan import CELLS, CELLS_WITH_STONES, Slope, plan
+from .plan import CELLS, CELLS_WITH_STONES, DURATION, Slope, plan
 from .study import Convergence, converge
 from .tables import markdown
 
 __all__ = [
     "CELLS",
     "CELLS_WITH_STONES",
+    "DURATION",
     "Convergence",
     "Slope",
     "converge",

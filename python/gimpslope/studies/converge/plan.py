@@ -6,9 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from ... import _check
+from ...method import Method, VolumetricStrain
 from ...recording import Recording
 from .. import planned, reference
 from ..planned import Planned
@@ -34,8 +36,11 @@ class Slope:
     reading : of the paper, see `reference.READINGS`
     name : see `reference.SLOPES`
     cells : m, coarse to fine
+    stone_frictions : for each a further model, rigid stones that soil slides along with that angle
+        of friction, degrees
+    volumetric_strains : of `Method`; each model with each of them
     seeds : of the draws; one for the slope without stones, which nothing is drawn for
-    planned : by the model of the stones the runs on each grid, one a draw
+    planned : by the model the runs on each grid, one a draw
     """
 
     reading: str
@@ -51,6 +56,8 @@ def plan(
     slopes: Sequence[str] = (SOIL,),
     readings: Sequence[str] = tuple(reference.READINGS),
     stone_models: Sequence[str] = ("deformable",),
+    stone_frictions: Sequence[float] = (),
+    volumetric_strains: Sequence[VolumetricStrain] = ("point",),
     seeds: Sequence[int] = SEEDS,
     cells: Sequence[float] | None = None,
     duration: float = DURATION,
@@ -84,26 +91,68 @@ def plan(
     duration = _check.positive("duration", duration)
     seeds = check_seeds(seeds)
 
-    def run(reading: str, name: str, model: str, cell: float, seed: int) -> Planned:
-        stones: dict[str, Any] = {} if model == NO_STONES else {"stone_model": model, "seed": seed}
+    def run(reading: str, name: str, model: _Model, cell: float, seed: int) -> Planned:
+        drawn: dict[str, Any] = {} if name == SOIL else {"seed": seed}
         with named(f"slope {name}, cell {cell:g} m"):
             setup = reference.setup(
-                name, reading=reading, cell=cell, duration=duration, threads=threads, **stones
+                name,
+                reading=reading,
+                cell=cell,
+                duration=duration,
+                threads=threads,
+                **drawn,
+                **model.options,
             )
         setup = replace(setup, recording=Recording(snapshot_interval=duration))
-        file = "_".join([name, reading, *map(str, stones.values()), f"{cell:g}.h5"])
-        return planned.plan(Path(directory) / file, setup, overwrite=overwrite)
+        parts = [name, reading, *model.parts, *map(str, drawn.values()), f"{cell:g}"]
+        return planned.plan(Path(directory) / ("_".join(parts) + ".h5"), setup, overwrite=overwrite)
 
     def slope(reading: str, name: str) -> Slope:
         soil = name == SOIL
         grids = check_cells(cells or (CELLS if soil else CELLS_WITH_STONES))
         drawn = seeds[:1] if soil else seeds
+        stones = [_Model(NO_STONES)] if soil else _of_stones(stone_models, stone_frictions)
         runs = {
-            model: tuple(
+            model.label: tuple(
                 tuple(run(reading, name, model, cell, seed) for seed in drawn) for cell in grids
             )
-            for model in ((NO_STONES,) if soil else stone_models)
+            for model in _with_strains(stones, volumetric_strains)
         }
         return Slope(reading, name, grids, drawn, runs)
 
     return [slope(reading, name) for name in slopes for reading in readings]
+
+
+class _Model(NamedTuple):
+    """What a slope is computed with: in words, in parts of a file's name, as options of
+    `reference.setup`."""
+
+    label: str
+    parts: tuple[str, ...] = ()
+    options: Mapping[str, Any] = MappingProxyType({})
+
+
+def _of_stones(names: Sequence[str], frictions: Sequence[float]) -> list[_Model]:
+    return [_Model(name, (name,), {"stone_model": name}) for name in names] + [
+        _Model(
+            f"rigid, friction {angle:g}°",
+            (f"rigid-{angle:g}",),
+            {"stone_model": "rigid", "stone_friction": angle},
+        )
+        for angle in frictions
+    ]
+
+
+def _with_strains(models: Sequence[_Model], strains: Sequence[VolumetricStrain]) -> list[_Model]:
+    """Each model with each way to take volume strains; that of `Method` by itself goes unsaid."""
+    return [
+        model
+        if strain == Method.volumetric_strain
+        else _Model(
+            f"{model.label}, {strain.replace('_', ' ')}",
+            (*model.parts, strain.replace("_", "-")),
+            {**model.options, "volumetric_strain": strain},
+        )
+        for model in models
+        for strain in strains
+    ]
