@@ -28,7 +28,6 @@ from reference import Material, Reference
 from reference.bodies import Rigid
 from reference.shapes import weights
 
-
 STONES = [ROCK, gs.Rigid(ROCK.density, friction=30.0)]
 SMOOTH = gs.Rigid(ROCK.density, friction=0.0)
 
