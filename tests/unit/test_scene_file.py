@@ -287,3 +287,18 @@ def test_a_run_gives_its_setup_back(tmp_path: Path) -> None:
     run = setup.simulate(tmp_path / "a.h5", progress=False)
     assert run.setup == setup
     assert gs.load(tmp_path / "a.h5") == gs.load(tmp_path / "scene.toml") == setup
+
+
+def test_friction_of_rigid_stones(tmp_path: Path) -> None:
+    rock = (
+        GRANITE.splitlines()[1]
+        + """
+law = "rigid"
+density = 2600
+friction = 30
+mutual_friction = 20
+"""
+    )
+    text = SLOPE + SOIL + rock + STONES + STONE
+    (first, _) = setup_of(tmp_path, text).scene.stones
+    assert first.material == gs.Rigid(2600, friction=30, mutual_friction=20)
