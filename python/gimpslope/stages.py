@@ -158,9 +158,9 @@ class Slide(Record):
         """This slide, which ends when the kinetic energy is below a hundredth of its peak and no
         figure would change by more than 0.2 % until its duration is over, by the last half second.
 
-        On the study's slopes at 0.2 m and slope A at 0.1 m, each figure is then within 0.2 % of its
-        value after the full 10 s. `literal` slides end between 5.6 and 6.1 s. In `identified` the
-        fronts creep on, and it takes 9 to 10 s.
+        On the study's slopes with rigid stones at 0.2 m, and slope A at 0.1 m, each figure is then
+        within 0.2 % of its value after the full 10 s. `literal` slides end between 5.6 and 6.1 s.
+        In `identified` the fronts creep on, and it takes 9 to 10 s.
         """
         return replace(self, rest_ratio=1e-2, rest_speed=None, rest_time=0.5, rest_change=2e-3)
 

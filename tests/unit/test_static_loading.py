@@ -70,7 +70,7 @@ def test_stages_take_the_longest_steps_and_give_the_methods_back(
     method: gs.Method, share: float | None, tmp_path: Path
 ) -> None:
     """0.9 of the stable step, or one at which the points keep half of their own velocity."""
-    simulation = Simulation(Setup(SLOPE, method, gs.Stages()))
+    simulation = Simulation(Setup(SLOPE, method, gs.Stages(gs.Gravity(0))))
     solver = simulation.solver
     usual, stable = solver.time_step, solver.stable_time_step
     with recording(simulation, tmp_path / "run.h5") as recorder:
