@@ -151,7 +151,7 @@ def test_method_refuses_two_ways_of_giving_one_thing(given):
 def test_stages_find_a_static_solution_unless_told():
     settling = Settling(unbalanced=2e-3, limit=20.0, damping="kinetic", courant=0.9)
     slide = Slide(duration=10.0, rest_ratio=0.0, rest_change=None)
-    assert Stages() == Stages(Gravity(ramp=0.0), settling, slide)
+    assert Stages() == Stages(Gravity(ramp=0.2), settling, slide)
 
 
 def test_criteria_of_settling():
