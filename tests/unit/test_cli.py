@@ -192,6 +192,16 @@ def test_slopes_with_stones(
     )
 
 
+def test_rigid_stones_with_friction(undrawn: list[Any]) -> None:
+    words = "run round --cell 0.4 --duration 0.01 --stone-model rigid --stone-friction 30 --quiet"
+    assert cli.main(words.split()) == 0
+    run = gs.open("round.h5")
+    assert run.scene.materials[1] == gs.Rigid(2400, friction=30)
+    assert run.setup.scene == reference.slope(
+        "round", cell=0.4, stone_model="rigid", stone_friction=30
+    )
+
+
 SCENE = """
 cell = 0.8
 [outline]

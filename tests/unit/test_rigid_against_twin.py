@@ -178,10 +178,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "heap_cpgimp": (heap() | cpgimp("stretch"), "heap"),
     "sliding": (sliding(25.0), "base"),
     "sliding_smooth": (sliding(0.0), "sliding"),
-    "sliding_flip": (sliding(25.0) | {"blend": ("alpha", 0.0)}, "sliding"),
     "sliding_linear": (sliding(25.0) | {"shape": "linear"}, "sliding"),
-    "sliding_cpgimp": (sliding(25.0) | cpgimp("stretch"), "sliding"),
-    "sliding_cell_average": (sliding(25.0) | {"volumetric_strain": "cell_average"}, "sliding"),
     "sliding_body_force": (
         sliding(25.0) | {"body_force": 5.0 * RANDOM.standard_normal((N, 2))},
         "sliding",

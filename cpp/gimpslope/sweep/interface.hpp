@@ -72,7 +72,7 @@ inline Meeting meeting_of(const BodyNode& node, const Pair& apart, double fricti
   return std::fabs(along) > friction * into ? Meeting::slipping : Meeting::stuck;
 }
 
-/// A row of the matrix that takes the soil's approach to the impulse that it takes: mass times
+/// The matrix that turns the approach of the soil into the impulse that it takes: its mass times
 /// (n - s mu t) n^T where it slips, with s the direction of slip, and times one where it sticks.
 struct Answer {
   double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;
@@ -112,7 +112,7 @@ inline void solve3(const double (&a)[3][3], const double (&b)[3], double (&x)[3]
 
 /// The impulses between a body and the soil at its nodes, and its velocity with them: that velocity
 /// tells how the soil meets it, and the impulses, linear in it, what it is; in turn until the
-/// meetings stay.
+/// meetings stay (a semi-smooth Newton method).
 inline void settle_nodes(const BodiesView& all, int body) {
   HeldBody& held = all.held[body];
   const double mass = all.mass[body], inertia = all.inertia[body], friction = all.friction[body];
