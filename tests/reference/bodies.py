@@ -215,9 +215,8 @@ def _contacts_of(
         both = half + other_size[k]
         if between @ between > (both + SEEN * cell) ** 2 + both**2:
             continue
-        near, opposite = (
-            of[np.hypot(*(of - middle).T) <= SURROUND * cell] for of in (places, others)
-        )
+        around = max(SURROUND * cell, float(np.hypot(*between)))
+        near, opposite = (of[np.hypot(*(of - middle).T) <= around] for of in (places, others))
         line = shortest_between(near, opposite)
         normal = line / np.hypot(*line)
         gap = float(between @ normal) - both

@@ -99,6 +99,32 @@ def test_lifted_block_leaves_without_a_pull() -> None:
     assert sticking.min() < -1.0
 
 
+def gap_at_first_touch(friction: float | None) -> float:
+    """Of a block that nears the plate at 1 m/s without gravity, in cells."""
+    plate = rectangle(1.2, DEPTH, SPACING)
+    block = rectangle(0.6, 0.4, SPACING) + np.array([0.33, DEPTH + 2 * CELL])
+    given = points(SPACING, (plate, PLATE.density, 0, -1), (block, DENSITY, 1, 0))
+    solver = gs.Solver(
+        given,
+        [PLATE, gs.Rigid(DENSITY, friction)],
+        cell=CELL,
+        velocity=np.where((given.stone == 0)[:, None], [0.0, -1.0], 0.0),
+        walls=gs.Walls(gs.Roller(), gs.Roller(), gs.Fixed(), gs.Free()),
+        wall_positions=(0.0, 1.2, 0.0, 2.0),
+        method=gs.Method(alpha=0.0, courant=0.4),
+    )
+    while bodies(solver).impulse[0, 1] == 0.0:
+        solver.step()
+    return float((bodies(solver).centre[0, 1] - 0.2 - DEPTH) / CELL)
+
+
+def test_stone_touches_soil_where_it_meets_it() -> None:
+    """Within the tenth of a cell that the edges are known to; soil that sticks is met more than
+    half a cell before."""
+    assert 0.0 < gap_at_first_touch(20.0) < 0.11
+    assert gap_at_first_touch(None) > 0.5
+
+
 def test_smooth_disk_does_not_turn_with_the_soil_around_it() -> None:
     """A disk of soil turns about a rigid disk in its middle. Friction takes that along, more or
     less; a smooth stone stays as it is but for the corners of its points."""
