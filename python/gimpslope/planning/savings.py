@@ -1,0 +1,81 @@
+"""What makes a run cheaper and hardly another: tried on the coarsest grid, and kept where it is so.
+
+An error of the time step shrinks with the cell, for the step does, and so does what a wave of the
+loading leaves behind; the change found is an upper bound for finer grids.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from ..setup import Setup
+from ..stages import Gravity
+from .pilot import Pilot, change, fly
+from .target import Target
+
+_SHARE = 0.2
+"""Of the error asked for, what all savings together may cost."""
+
+_COURANT = 0.8
+
+
+class Saving(NamedTuple):
+    """A change of a setup and what it is called."""
+
+    title: str
+    apply: Callable[[Setup], Setup]
+
+
+def _gravity_at_once(setup: Setup) -> Setup:
+    return replace(setup, stages=replace(setup.stages, gravity=Gravity(ramp=0.0)))
+
+
+def _long_steps(setup: Setup) -> Setup:
+    return replace(setup, method=replace(setup.method, courant=_COURANT))
+
+
+SAVINGS = (
+    Saving("gravity is applied at once", _gravity_at_once),
+    Saving(f"the Courant number is {_COURANT}", _long_steps),
+)
+
+
+@dataclass(frozen=True)
+class Saved:
+    """The setup with the savings that are worth it.
+
+    Attributes
+    ----------
+    setup : with them
+    pilot : its run on the coarsest grid
+    changes : share by which they change each quantity there
+    reasons : a sentence each
+    """
+
+    setup: Setup
+    pilot: Pilot
+    changes: dict[str, float]
+    reasons: tuple[str, ...]
+
+
+def save(setup: Setup, target: Target, directory: Path) -> Saved:
+    """Try each saving on top of those before."""
+    names = target.quantities
+    plain = fly(setup, directory / "plain.h5", names)
+    saved = Saved(setup, plain, dict.fromkeys(names, 0.0), ())
+    for number, saving in enumerate(SAVINGS):
+        changed = saving.apply(saved.setup)
+        pilot = fly(changed, directory / f"saving_{number}.h5", names)
+        changes = change(pilot, plain)
+        worst = max(changes.values())
+        shown = f"on the coarsest grid that changes no quantity by more than {worst:.2g} of itself"
+        if worst <= _SHARE * target.error:
+            reason = f"{saving.title}: {shown}"
+            saved = Saved(changed, pilot, changes, (*saved.reasons, reason))
+        else:
+            reason = f"not kept: {saving.title}, for it changes a quantity by {worst:.2g} of itself"
+            saved = replace(saved, reasons=(*saved.reasons, reason))
+    return saved
