@@ -6,7 +6,7 @@ import shutil
 import tempfile
 import time as clock
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -111,10 +111,10 @@ class Plan:
 
     def _between(self) -> list[Pilot]:
         """Runs on the grids between the finest pilot and the chosen one."""
-        folder, names = Path(self._directory.name), self._search.target.quantities
+        found, folder, first = self._search, Path(self._directory.name), len(self._search.pilots)
         return [
-            fly(_on(self._search, levels), folder / f"between_{levels}.h5", names)
-            for levels in range(1, self.levels)
+            fly(found.on(level), folder / f"between_{level}.h5", found.target.quantities)
+            for level in range(first, first + self.levels - 1)
         ]
 
     def __str__(self) -> str:
@@ -172,7 +172,7 @@ def plan(
     found = search(problem, target, Path(directory.name), progress=progress)
     needed, levels = found.levels, _affordable(found)
     return Plan(
-        setup=_on(found, levels),
+        setup=found.on(len(found.pilots) - 1 + levels),
         error=target.error,
         holds=needed is not None and levels >= needed,
         levels=levels,
@@ -203,14 +203,3 @@ def _copied(run: Run, output: Path, overwrite: bool) -> Run:
         )
     shutil.copyfile(run.path, output)
     return Run(output)
-
-
-def _on(found: Search, levels: int) -> Setup:
-    """The setup on a grid finer than the finest pilot, its slide no longer than is needed."""
-    setup = found.problem.on(len(found.pilots) - 1 + levels, found.saved.setup)
-    slide = setup.stages.slide
-    if levels == 0 or found.tail.time >= slide.duration:
-        return setup
-    return replace(
-        setup, stages=replace(setup.stages, slide=replace(slide, duration=found.tail.time))
-    )

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..setup import Setup
 from . import grids, stones
 from .cost import seconds
 from .estimate import Estimate
 from .pilot import Pilot, fly
 from .problem import Problem
-from .quantities import need_rest
 from .savings import Saved, save
-from .tail import Tail, tail
+from .tail import NO_TAIL, Tail, tail
 from .target import Target
 
+FULL = 2
+"""Pilots whose slides last as long as the stages say."""
+
+_ORDER_NEEDS = 3
+_THIRD_SHARE = 1 / 2
 _PILOT_SHARE = 1 / 8
 """Of the budget, what a pilot may cost: half the cell is eight times the cost."""
 
@@ -31,41 +36,45 @@ class Search:
     problem, saved : what is run on all grids
     pilots : coarse to fine
     target : what is asked for
+    tail : where slides of finer grids than the first two may end
     """
 
     problem: Problem
     saved: Saved
     pilots: tuple[Pilot, ...]
     target: Target
+    tail: Tail
 
     @property
     def estimates(self) -> tuple[Estimate, ...]:
         """By the pilots."""
-        late = self.tail.error
-        return tuple(
-            Estimate(name, cells, values, self.saved.changes[name], late.get(name, 0.0))
-            for name, cells, values in _by_name(
-                self.target.quantities, self.pilots, [p.values for p in self.pilots]
-            )
-        )
+        return self.improved(())
 
     def improved(self, finer: Sequence[Pilot]) -> tuple[Estimate, ...]:
-        """By the pilots and runs on the grids after them, whose slides end as the tail says."""
-        end, pilots = self.tail, (*self.pilots, *finer)
-        values = [pilot.values for pilot in self.pilots] + [end.extend(run.values) for run in finer]
-        late = end.error if finer else {}
+        """By the pilots and runs on the grids after them."""
+        pilots = (*self.pilots, *finer)
+        values = [
+            pilot.values if number < FULL else self.tail.extend(pilot.values)
+            for number, pilot in enumerate(pilots)
+        ]
         return tuple(
-            Estimate(name, cells, raw, self.saved.changes[name] + late.get(name, 0.0))
-            for name, cells, raw in _by_name(self.target.quantities, pilots, values)
+            Estimate(
+                name,
+                tuple(pilot.cell for pilot in pilots),
+                tuple(one[name] for one in values),
+                self.saved.changes[name] + self.tail.error.get(name, 0.0),
+            )
+            for name in self.target.quantities
         )
 
-    @property
-    def tail(self) -> Tail:
-        """Where the slides of finer runs may end."""
-        *_, before, last = self.pilots
-        if not need_rest(self.target.quantities):
-            return Tail(math.inf, {}, {})
-        return tail(before, last, self.target.error)
+    def on(self, level: int) -> Setup:
+        """The setup on a grid, counted from the coarsest; its slide is no longer than is needed."""
+        setup = self.problem.on(level, self.saved.setup)
+        slide = setup.stages.slide
+        if level < FULL or self.tail.time >= slide.duration:
+            return setup
+        slide = replace(slide, duration=self.tail.time)
+        return replace(setup, stages=replace(setup.stages, slide=slide))
 
     @property
     def levels_apart(self) -> int | None:
@@ -97,14 +106,6 @@ class Search:
         return sum(pilot.seconds for pilot in self.pilots)
 
 
-def _by_name(
-    names: Sequence[str], pilots: Sequence[Pilot], values: Sequence[Mapping[str, float]]
-) -> Iterator[tuple[str, tuple[float, ...], tuple[float, ...]]]:
-    """Name, cells and values of each quantity."""
-    cells = tuple(pilot.cell for pilot in pilots)
-    return ((name, cells, tuple(one[name] for one in values)) for name in names)
-
-
 def search(
     problem: Problem,
     target: Target,
@@ -116,17 +117,18 @@ def search(
     more than half the budget (s), and then as long as the grid that will do is not the next one and
     a pilot costs no more than an eighth."""
     saved = save(problem.setup, target, directory)
-    found = Search(problem, saved, (saved.pilot,), target)
+    found = Search(problem, saved, (saved.pilot,), target, NO_TAIL)
     while True:
-        levels = len(found.pilots)
-        setup, path = problem.on(levels, saved.setup), directory / f"pilot_{levels}.h5"
-        pilot = fly(setup, path, target.quantities)
-        found = Search(problem, saved, (*found.pilots, pilot), target)
+        level = len(found.pilots)
+        pilot = fly(found.on(level), directory / f"pilot_{level}.h5", target.quantities)
+        found = replace(found, pilots=(*found.pilots, pilot))
+        if level + 1 == FULL:
+            found = replace(found, tail=tail(saved.pilot, pilot, target.error))
         if progress:
             _tell(pilot)
-        few = len(found.pilots) < 3
+        few = len(found.pilots) < _ORDER_NEEDS
         near = not few and found.levels in (0, 1)
-        if near or found.seconds(1) > target.budget * (0.5 if few else _PILOT_SHARE):
+        if near or found.seconds(1) > target.budget * (_THIRD_SHARE if few else _PILOT_SHARE):
             return found
 
 

@@ -18,7 +18,7 @@ class Tail(NamedTuple):
     ----------
     time : s
     growth : by what each quantity grows from then to the end of the slide, a factor by name
-    error : by what the two finest pilots differ in that, as a share
+    error : of that, as a share: what two pilots differ in it, or half of it if that is more
     """
 
     time: float
@@ -30,20 +30,25 @@ class Tail(NamedTuple):
         return {name: value * self.growth.get(name, 1.0) for name, value in values.items()}
 
 
+NO_TAIL = Tail(math.inf, {}, {})
+"""Of runs that end by themselves."""
+
+
 def tail(before: Pilot, last: Pilot, error: float) -> Tail:
-    """The earliest snapshot after which two pilots, which end at the same time, agree on the growth
-    of all quantities to a tenth of the error asked for; the end where they do not."""
+    """The earliest snapshot from which on two pilots tell the growth of all quantities to a tenth
+    of the error asked for."""
     peak = last.run.energy.peak.time
     for time in last.history:
         if time < _PAST_THE_PEAK * peak or time >= last.reached or time not in before.history:
             continue
-        growth = _growth(last, time)
-        differ = {
-            name: abs(factor - _growth(before, time)[name]) for name, factor in growth.items()
+        growth, other = _growth(last, time), _growth(before, time)
+        errors = {
+            name: max(abs(factor - other[name]), abs(factor - 1) / 2)
+            for name, factor in growth.items()
         }
-        if all(math.isfinite(size) and size <= _SHARE * error for size in differ.values()):
-            return Tail(time, growth, differ)
-    return Tail(last.reached, {}, {})
+        if all(size <= _SHARE * error for size in errors.values()):
+            return Tail(time, growth, errors)
+    return NO_TAIL
 
 
 def _growth(pilot: Pilot, time: float) -> dict[str, float]:
