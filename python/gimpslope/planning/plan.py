@@ -5,6 +5,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 import time as clock
+import weakref
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -36,6 +37,7 @@ class Answer:
     run : on the finest grid, which its file holds
     estimates : of each quantity by name, by all grids: value, error, and the raw values beside
     error : asked for
+    grids : all runs, from coarse to fine, the pilots first
     seconds : wall time of the runs, without the pilots, s
     apart : whether the grids that the estimates are from tell all stones apart
     """
@@ -43,6 +45,7 @@ class Answer:
     run: Run
     estimates: Mapping[str, Estimate]
     error: float
+    grids: tuple[Pilot, ...]
     seconds: float
     apart: bool
 
@@ -76,7 +79,10 @@ class Plan:
     seconds: float
     reasons: tuple[str, ...]
     _search: Search = field(repr=False)
-    _directory: tempfile.TemporaryDirectory[str] = field(repr=False)
+    _directory: Path = field(repr=False)
+
+    def __post_init__(self) -> None:
+        weakref.finalize(self, shutil.rmtree, self._directory, ignore_errors=True)
 
     @cached_property
     def estimates(self) -> Mapping[str, Estimate]:
@@ -105,13 +111,14 @@ class Plan:
             run,
             MappingProxyType({one.name: one for one in found.improved(finer)}),
             self.error,
+            (*found.pilots, *finer),
             clock.perf_counter() - start,
             found.levels_apart is not None and self.levels >= found.levels_apart,
         )
 
     def _between(self) -> list[Pilot]:
         """Runs on the grids between the finest pilot and the chosen one."""
-        found, folder, first = self._search, Path(self._directory.name), len(self._search.pilots)
+        found, folder, first = self._search, self._directory, len(self._search.pilots)
         return [
             fly(found.on(level), folder / f"between_{level}.h5", found.target.quantities)
             for level in range(first, first + self.levels - 1)
@@ -168,8 +175,12 @@ def plan(
         Stages() if stages is None else _check.instance("stages", stages, Stages, "Stages"),
         until_rest=need_rest(target.quantities),
     )
-    directory = tempfile.TemporaryDirectory(prefix="gimpslope_")
-    found = search(problem, target, Path(directory.name), progress=progress)
+    directory = Path(tempfile.mkdtemp(prefix="gimpslope_"))
+    try:
+        found = search(problem, target, directory, progress=progress)
+    except BaseException:
+        shutil.rmtree(directory)
+        raise
     needed, levels = found.levels, _affordable(found)
     return Plan(
         setup=found.on(len(found.pilots) - 1 + levels),

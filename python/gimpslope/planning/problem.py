@@ -30,6 +30,10 @@ class Problem:
     setup: Setup
     reasons: tuple[str, ...]
 
+    def finer(self) -> Problem:
+        """The same, with the next grid as the coarsest."""
+        return replace(self, setup=self.on(1))
+
     def on(self, levels: int, setup: Setup | None = None) -> Setup:
         """The setup, or another one of the coarsest grid, with the cell halved so many times."""
         setup = setup or self.setup

@@ -68,7 +68,7 @@ def limits(found: Search, levels: int) -> tuple[str, ...]:
         lost = [one for one in found.estimates if one.levels(target.error) is None]
         reasons += [
             f"{QUANTITIES[one.name].title}: {one.behaviour} from {one.cells[-3:][0]:g} to {cell:g} "
-            "m, which tells no cell that would do"
+            f"m, which tells no cell that would do for {target.error:.3g}"
             for one in lost
         ]
     elif needed > levels:

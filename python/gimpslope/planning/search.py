@@ -12,16 +12,18 @@ from ..setup import Setup
 from . import grids, stones
 from .cost import seconds
 from .estimate import Estimate
-from .pilot import Pilot, fly
+from .pilot import Pilot, change, fly
 from .problem import Problem
 from .savings import Saved, save
-from .tail import NO_TAIL, Tail, tail
+from .tail import Tail, tail
 from .target import Target
 
 FULL = 2
 """Pilots whose slides last as long as the stages say."""
 
 _ORDER_NEEDS = 3
+_TRIES = 3
+_ALIKE = 2 / 3
 _THIRD_SHARE = 1 / 2
 _PILOT_SHARE = 1 / 8
 """Of the budget, what a pilot may cost: half the cell is eight times the cost."""
@@ -116,20 +118,31 @@ def search(
     """Pilots on grids each half as coarse as the one before: two at least, three if that costs no
     more than half the budget (s), and then as long as the grid that will do is not the next one and
     a pilot costs no more than an eighth."""
-    saved = save(problem.setup, target, directory)
-    found = Search(problem, saved, (saved.pilot,), target, NO_TAIL)
+    found = _begin(problem, target, directory)
     while True:
-        level = len(found.pilots)
-        pilot = fly(found.on(level), directory / f"pilot_{level}.h5", target.quantities)
-        found = replace(found, pilots=(*found.pilots, pilot))
-        if level + 1 == FULL:
-            found = replace(found, tail=tail(saved.pilot, pilot, target.error))
         if progress:
-            _tell(pilot)
+            _tell(found.pilots[-1])
         few = len(found.pilots) < _ORDER_NEEDS
         near = not few and found.levels in (0, 1)
         if near or found.seconds(1) > target.budget * (_THIRD_SHARE if few else _PILOT_SHARE):
             return found
+        level = len(found.pilots)
+        pilot = fly(found.on(level), directory / f"pilot_{level}.h5", target.quantities)
+        found = replace(found, pilots=(*found.pilots, pilot))
+
+
+def _begin(problem: Problem, target: Target, directory: Path) -> Search:
+    """The savings on the coarsest grid and the pilot on the next one; with that as the coarsest
+    anew, twice at most, where a value grows from one to the other to three times or a third."""
+    for left in reversed(range(_TRIES)):
+        saved = save(problem.setup, target, directory)
+        setup = problem.on(1, saved.setup)
+        second = fly(setup, directory / "pilot_1.h5", target.quantities)
+        if not left or all(size <= _ALIKE for size in change(saved.pilot, second).values()):
+            break
+        problem = problem.finer()
+    end = tail(saved.pilot, second, target.error)
+    return Search(problem, saved, (saved.pilot, second), target, end)
 
 
 def _tell(pilot: Pilot) -> None:
