@@ -21,7 +21,7 @@ from ..setup import Setup
 from ..stages import Stages
 from . import report
 from .estimate import Estimate
-from .pilot import Pilot, fly
+from .pilot import Pilot
 from .problem import pose
 from .quantities import DEFAULT, need_rest
 from .search import Search, search
@@ -105,7 +105,8 @@ class Plan:
         if self.levels == 0:
             run, finer = _copied(found.pilots[-1].run, Path(output), overwrite), []
         else:
-            chosen = fly(self.setup, Path(output), found.target.quantities, overwrite=overwrite)
+            last = len(found.pilots) - 1 + self.levels
+            chosen = found.fly(last, Path(output), overwrite=overwrite)
             run, finer = chosen.run, [*self._between(), chosen]
         return Answer(
             run,
@@ -118,9 +119,9 @@ class Plan:
 
     def _between(self) -> list[Pilot]:
         """Runs on the grids between the finest pilot and the chosen one."""
-        found, folder, first = self._search, self._directory, len(self._search.pilots)
+        first = len(self._search.pilots)
         return [
-            fly(found.on(level), folder / f"between_{level}.h5", found.target.quantities)
+            self._search.fly(level, self._directory / f"between_{level}.h5")
             for level in range(first, first + self.levels - 1)
         ]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from ..energy import Energy
 from ..method import Method
 from ..recording import Recording
 from ..scene import Scene
@@ -59,7 +60,7 @@ def pose(
         reasons += [why] if why else []
     slide = stages.slide
     if not until_rest:
-        slide = Slide(slide.duration, rest_ratio=_PAST_THE_PEAK, rest_time=_FOR)
+        slide = past_the_peak(slide)
         reasons.append("the slide ends when its kinetic energy has passed its peak by a tenth")
     return Problem(
         Setup(
@@ -70,6 +71,18 @@ def pose(
         ),
         tuple(reasons),
     )
+
+
+def past_the_peak(slide: Slide) -> Slide:
+    """A slide that ends when its kinetic energy has passed its peak."""
+    return Slide(slide.duration, rest_ratio=_PAST_THE_PEAK, rest_time=_FOR)
+
+
+def passed(energy: Energy) -> float:
+    """When such a slide would have ended, s; its end where it has not."""
+    top = energy.peak
+    low = (energy.time > top.time) & (energy.kinetic < _PAST_THE_PEAK * top.value)
+    return float(energy.time[low].min(initial=energy.time[-1] - _FOR)) + _FOR
 
 
 def _courant(scene: Scene, method: Method) -> float:

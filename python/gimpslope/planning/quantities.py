@@ -70,6 +70,11 @@ def need_rest(names: Sequence[str]) -> bool:
     return any(QUANTITIES[name].of_state for name in names)
 
 
+def at_peak(names: Sequence[str]) -> tuple[str, ...]:
+    """Those of them that are."""
+    return tuple(name for name in names if QUANTITIES[name].of_peak)
+
+
 def peak_values(run: Run, names: Sequence[str]) -> dict[str, float]:
     """Those of the peak; NaN while the kinetic energy still grows."""
     peak = smooth_peak(run.energy)

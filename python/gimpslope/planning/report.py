@@ -45,8 +45,8 @@ def plan(made: Plan) -> str:
 
 def answer(found: Answer) -> str:
     """An answer: each quantity as extrapolated, with the raw values beside it."""
-    cells = next(iter(found.estimates.values())).cells
     reached = "is reached" if found.reached else "is not reached"
+    cells = [grid.cell for grid in found.grids]
     lines = [
         f"The error of {found.error:.3g} {reached} by the estimate, after {found.seconds:.1f} s.",
         f"{'extrapolated to no cell':26}{'value':>22}{'error':>9}"
@@ -54,7 +54,7 @@ def answer(found: Answer) -> str:
     ]
     for one in found.estimates.values():
         scale = QUANTITIES[one.name].scale
-        raw = "".join(f"{value / scale:9.4g}" for value in one.raw)
+        raw = "".join(f"{value / scale:9.4g}" for value in one.raw).ljust(9 * len(cells))
         lines.append(f"{_title(one)}{one.shown:>22}{_share(one.error):>9}{raw}  {one.behaviour}")
     return "\n".join(lines)
 
@@ -86,7 +86,12 @@ def limits(found: Search, levels: int) -> tuple[str, ...]:
             f"{worst.predicted(needed - 1):.2g} at {cell / 2 ** (needed - 1):g} m"
         )
     end = found.tail
-    if end.growth and levels:
+    if levels and len(found.wanted) < len(target.quantities):
+        reasons.append(
+            "the slide ends when its kinetic energy has passed its peak, for the pilots know all "
+            "that comes later well enough"
+        )
+    elif levels and end.growth:
         most = max(abs(factor - 1) for factor in end.growth.values())
         reasons.append(
             f"the slide ends at {end.time:.3g} s: what creeps on after it, {most:.2g} at most, is "

@@ -13,7 +13,8 @@ from . import grids, stones
 from .cost import seconds
 from .estimate import Estimate
 from .pilot import Pilot, change, fly
-from .problem import Problem
+from .problem import Problem, passed, past_the_peak
+from .quantities import at_peak, need_rest
 from .savings import Saved, save
 from .tail import Tail, tail
 from .target import Target
@@ -21,12 +22,12 @@ from .target import Target
 FULL = 2
 """Pilots whose slides last as long as the stages say."""
 
-_ORDER_NEEDS = 3
+ORDER_NEEDS = 3
 _TRIES = 3
 _ALIKE = 2 / 3
 _THIRD_SHARE = 1 / 2
-_PILOT_SHARE = 1 / 8
-"""Of the budget, what a pilot may cost: half the cell is eight times the cost."""
+_PILOT_SHARE = 1 / 4
+"""Of the budget, what a further pilot may cost; the run extrapolates from it too."""
 
 
 @dataclass(frozen=True)
@@ -54,28 +55,42 @@ class Search:
 
     def improved(self, finer: Sequence[Pilot]) -> tuple[Estimate, ...]:
         """By the pilots and runs on the grids after them."""
-        pilots = (*self.pilots, *finer)
         values = [
-            pilot.values if number < FULL else self.tail.extend(pilot.values)
-            for number, pilot in enumerate(pilots)
+            (pilot.cell, pilot.values if number < FULL else self.tail.extend(pilot.values))
+            for number, pilot in enumerate((*self.pilots, *finer))
         ]
         return tuple(
             Estimate(
                 name,
-                tuple(pilot.cell for pilot in pilots),
-                tuple(one[name] for one in values),
+                tuple(cell for cell, found in values if name in found),
+                tuple(found[name] for _, found in values if name in found),
                 self.saved.changes[name] + self.tail.error.get(name, 0.0),
             )
             for name in self.target.quantities
         )
 
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        """The quantities that finer grids are for: those of the peak alone, where the pilots know
+        all others well enough."""
+        names = tuple(self.target.quantities)
+        if len(self.pilots) < ORDER_NEEDS or self.levels_apart != 0:
+            return names
+        lacking = tuple(one.name for one in self.estimates if one.error > self.target.error)
+        return names if need_rest(lacking) or not lacking else at_peak(names)
+
+    def fly(self, level: int, path: Path, *, overwrite: bool = True) -> Pilot:
+        """Run the grid of a level, counted from the coarsest, for what is wanted of it."""
+        return fly(self.on(level), path, self.wanted, overwrite=overwrite)
+
     def on(self, level: int) -> Setup:
         """The setup on a grid, counted from the coarsest; its slide is no longer than is needed."""
         setup = self.problem.on(level, self.saved.setup)
         slide = setup.stages.slide
-        if level < FULL or self.tail.time >= slide.duration:
-            return setup
-        slide = replace(slide, duration=self.tail.time)
+        if not need_rest(self.wanted):
+            slide = past_the_peak(slide)
+        elif level >= FULL and self.tail.time < slide.duration:
+            slide = replace(slide, duration=self.tail.time)
         return replace(setup, stages=replace(setup.stages, slide=slide))
 
     @property
@@ -98,9 +113,10 @@ class Search:
 
     def seconds(self, levels: int) -> float:
         """Predicted wall time of a run whose cell is halved so many times more, s."""
-        end = min(self.tail.time / self.pilots[-1].reached, 1.0)
+        last = self.pilots[-1]
+        end = self.tail.time if need_rest(self.wanted) else passed(last.run.energy)
         points = grids.n_points(self.saved.setup.scene, len(self.pilots) - 1 + levels)
-        return seconds(self.pilots, points, levels, end)
+        return seconds(self.pilots, points, levels, min(end / last.reached, 1.0))
 
     @property
     def spent(self) -> float:
@@ -117,23 +133,23 @@ def search(
 ) -> Search:
     """Pilots on grids each half as coarse as the one before: two at least, three if that costs no
     more than half the budget (s), and then as long as the grid that will do is not the next one and
-    a pilot costs no more than an eighth."""
+    a pilot costs no more than a quarter."""
     found = _begin(problem, target, directory)
     while True:
         if progress:
             _tell(found.pilots[-1])
-        few = len(found.pilots) < _ORDER_NEEDS
+        few = len(found.pilots) < ORDER_NEEDS
         near = not few and found.levels in (0, 1)
         if near or found.seconds(1) > target.budget * (_THIRD_SHARE if few else _PILOT_SHARE):
             return found
         level = len(found.pilots)
-        pilot = fly(found.on(level), directory / f"pilot_{level}.h5", target.quantities)
+        pilot = found.fly(level, directory / f"pilot_{level}.h5")
         found = replace(found, pilots=(*found.pilots, pilot))
 
 
 def _begin(problem: Problem, target: Target, directory: Path) -> Search:
     """The savings on the coarsest grid and the pilot on the next one; with that as the coarsest
-    anew, twice at most, where a value grows from one to the other to three times or a third."""
+    anew, twice at most, where a value is off by more than two thirds."""
     for left in reversed(range(_TRIES)):
         saved = save(problem.setup, target, directory)
         setup = problem.on(1, saved.setup)
