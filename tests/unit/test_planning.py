@@ -215,7 +215,7 @@ def plan(small: gs.Scene) -> gs.Plan:
         ("peak_kinetic_energy", "run_out"),
         method=METHOD,
         stages=gs.Stages(slide=gs.Slide(4.0)),
-        budget=20,
+        budget=1000,
         progress=False,
     )
 
