@@ -11,7 +11,7 @@ from .. import planning, scene_file
 from ..setup import Setup
 from ..studies import reference
 from .commands import Commands
-from .paths import check_file
+from .paths import check_file, has_ending
 
 
 def add(commands: Commands) -> None:
@@ -26,8 +26,13 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "scene",
         metavar="SCENE",
-        help=f"{', '.join(reference.SLOPES)} (the study's slopes A to D, reading identified), a "
-        "scene file (.toml), or a run file (.h5)",
+        help=f"{', '.join(reference.SLOPES)} (the study's slopes A to D), a scene file (.toml), "
+        "or a run file (.h5)",
+    )
+    parser.add_argument(
+        "--reading",
+        choices=list(reference.READINGS),
+        help="of the study's slopes (default: identified)",
     )
     parser.add_argument(
         "--error",
@@ -90,15 +95,20 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
 
 
 def _setup(options: argparse.Namespace) -> Setup:
+    given = {
+        name: value
+        for name, value in (("reading", options.reading), ("seed", options.seed))
+        if value is not None
+    }
     if options.scene in reference.SLOPES:
-        setup = reference.setup(options.scene, seed=1 if options.seed is None else options.seed)
-        return replace(setup, method=reference.method(ledger=False))
-    if options.seed is not None:
+        setup = reference.setup(options.scene, **given)
+        return replace(setup, method=replace(setup.method, ledger=False))
+    for name, value in given.items():
         raise ValueError(
-            f"--seed must be left out unless SCENE is one of {', '.join(reference.SLOPES)}, "
-            f"got {options.seed} with {options.scene!r}"
+            f"--{name} must be left out unless SCENE is one of {', '.join(reference.SLOPES)}, "
+            f"got {value!r} with {options.scene!r}"
         )
-    if not options.scene.lower().endswith((".toml", ".h5")):
+    if not has_ending(options.scene, ".toml") and not has_ending(options.scene, ".h5"):
         raise ValueError(
             f"SCENE must be one of {', '.join(reference.SLOPES)}, a scene file that ends in .toml, "
             f"or a run file that ends in .h5, got {options.scene!r}"

@@ -79,6 +79,11 @@ class Estimate:
         return next(enough, None)
 
     @property
+    def stands(self) -> str:
+        """What the grids do, and what the value is for that."""
+        return f"{self.behaviour}, {'limit' if self._limit else 'finest grid'}"
+
+    @property
     def shown(self) -> str:
         """The best value with its error, in words."""
         quantity = QUANTITIES[self.name]

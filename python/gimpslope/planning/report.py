@@ -37,7 +37,7 @@ def plan(made: Plan) -> str:
     ]
     lines += [
         f"{_title(one)}{one.shown:>22}{_share(one.error):>9}{_share(one.predicted(levels)):>16}"
-        f"{_share(one.at_worst(levels)):>10}  {one.behaviour}"
+        f"{_share(one.at_worst(levels)):>10}  {one.stands}"
         for one in made.estimates.values()
     ]
     return "\n".join(lines)
@@ -49,13 +49,12 @@ def answer(found: Answer) -> str:
     cells = [grid.cell for grid in found.grids]
     lines = [
         f"The error of {found.error:.3g} {reached} by the estimate, after {found.seconds:.1f} s.",
-        f"{'extrapolated to no cell':26}{'value':>22}{'error':>9}"
-        + "".join(f"{f'{cell:g} m':>9}" for cell in cells),
+        f"{'':26}{'value':>22}{'error':>9}" + "".join(f"{f'{cell:g} m':>9}" for cell in cells),
     ]
     for one in found.estimates.values():
         scale = QUANTITIES[one.name].scale
         raw = "".join(f"{value / scale:9.4g}" for value in one.raw).ljust(9 * len(cells))
-        lines.append(f"{_title(one)}{one.shown:>22}{_share(one.error):>9}{raw}  {one.behaviour}")
+        lines.append(f"{_title(one)}{one.shown:>22}{_share(one.error):>9}{raw}  {one.stands}")
     return "\n".join(lines)
 
 

@@ -54,19 +54,21 @@ class Saved:
     pilot : its run on the coarsest grid
     changes : share by which they change each quantity on the third grid
     reasons : a sentence each
+    seconds : wall time of all that was tried, s
     """
 
     setup: Setup
     pilot: Pilot
     changes: dict[str, float]
     reasons: tuple[str, ...]
+    seconds: float
 
 
 def save(setup: Setup, target: Target, directory: Path) -> Saved:
     """Try each saving on top of those before."""
     names = target.quantities
     plain = fly(setup, directory / "plain.h5", names)
-    saved = Saved(setup, plain, dict.fromkeys(names, 0.0), ())
+    saved = Saved(setup, plain, dict.fromkeys(names, 0.0), (), plain.seconds)
     for number, saving in enumerate(SAVINGS):
         changed = saving.apply(saved.setup)
         pilot = fly(changed, directory / f"saving_{number}.h5", names)
@@ -75,8 +77,9 @@ def save(setup: Setup, target: Target, directory: Path) -> Saved:
         worst = max(changes.values())
         if worst <= _SHARE * target.error:
             reason = f"{saving.title}: that changes no quantity by more than {worst:.1g} of itself"
-            saved = Saved(changed, pilot, changes, (*saved.reasons, reason))
+            saved = Saved(changed, pilot, changes, (*saved.reasons, reason), saved.seconds)
         else:
             reason = f"not kept: {saving.title}, which changes a quantity by {worst:.1g} of itself"
             saved = replace(saved, reasons=(*saved.reasons, reason))
+        saved = replace(saved, seconds=saved.seconds + pilot.seconds)
     return saved

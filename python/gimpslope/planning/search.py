@@ -120,8 +120,8 @@ class Search:
 
     @property
     def spent(self) -> float:
-        """Wall time of the pilots so far, s."""
-        return sum(pilot.seconds for pilot in self.pilots)
+        """Wall time of the pilots so far, and of what was tried on the coarsest grid, s."""
+        return self.saved.seconds + sum(pilot.seconds for pilot in self.pilots[1:])
 
 
 def search(
