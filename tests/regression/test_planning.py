@@ -9,10 +9,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import gimpslope as gs
-from gimpslope.planning import search
+from gimpslope.planning import Estimate, search
+from gimpslope.planning.pilot import fly
+from gimpslope.planning.problem import pose
 from gimpslope.studies import reference
 
 pytestmark = pytest.mark.slow
@@ -36,34 +39,38 @@ def scene(kind: str) -> gs.Scene:
 
 
 @pytest.fixture(scope="module")
-def trusted(tmp_path_factory: pytest.TempPathFactory) -> dict[str, gs.Answer]:
-    """Answers of the grid of 0.05 m."""
-    folder = tmp_path_factory.mktemp("trusted")
+def trusted(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, float]]:
+    """The limits of grids of 0.2, 0.1 and 0.05 m, by the steps that a run takes without a plan."""
+    path = tmp_path_factory.mktemp("trusted") / "run.h5"
     found = {}
     for kind in STONES:
-        plan = gs.plan(scene(kind), 0.03, PEAK, method=METHOD, budget=1000, progress=False)
-        found[kind] = plan.run(folder / f"{kind}.h5")
-        assert found[kind].grids[-1].cell <= FINEST
+        problem = pose(scene(kind), 0.05, METHOD, gs.Stages(), until_rest=False)
+        levels = round(np.log2(problem.setup.scene.cell / FINEST))
+        grids = [fly(problem.on(level), path, PEAK) for level in range(levels - 2, levels + 1)]
+        cells = tuple(grid.cell for grid in grids)
+        found[kind] = {
+            name: Estimate(name, cells, tuple(grid.values[name] for grid in grids)).value
+            for name in PEAK
+        }
     return found
 
 
 def test_true_errors_are_below_those_asked_for(
-    trusted: dict[str, gs.Answer], tmp_path: Path
+    trusted: dict[str, dict[str, float]], tmp_path: Path
 ) -> None:
-    kept, off = [], []
-    for kind, fine in trusted.items():
-        for error in (0.3, 0.2, 0.1, 0.05):
+    kept, off = 0, []
+    for kind, limits in trusted.items():
+        for error in (0.25, 0.2, 0.1, 0.05):
             plan = gs.plan(scene(kind), error, PEAK, method=METHOD, budget=1000, progress=False)
-            if not plan.holds or plan.setup.scene.cell < 2 * fine.grids[-1].cell:
+            if not plan.holds or plan.setup.scene.cell < 1.9 * FINEST:
                 continue
             answer = plan.run(tmp_path / "run.h5", overwrite=True)
-            for name in PEAK:
-                value, true = answer.estimates[name].value, fine.estimates[name].value
-                kept.append(abs(value / true - 1) <= error)
-                if not kept[-1]:
-                    off.append((kind, error, name, value, true))
-    assert len(kept) >= 12
-    assert sum(kept) >= 0.9 * len(kept), off
+            for name, true in limits.items():
+                value = answer.estimates[name].value
+                kept += abs(value / true - 1) <= error
+                off += [] if abs(value / true - 1) <= error else [(kind, error, name, value, true)]
+    assert kept >= 9
+    assert kept >= 9 * len(off), off
 
 
 def test_time_is_predicted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
