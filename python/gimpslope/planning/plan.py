@@ -183,8 +183,9 @@ def plan(
         shutil.rmtree(directory)
         raise
     needed, levels = found.levels, _affordable(found)
+    finest = found.pilots[-1]
     return Plan(
-        setup=found.on(len(found.pilots) - 1 + levels),
+        setup=found.on(len(found.pilots) - 1 + levels) if levels else finest.run.setup,
         error=target.error,
         holds=needed is not None and levels >= needed,
         levels=levels,

@@ -106,10 +106,13 @@ class Search:
 
     @property
     def levels(self) -> int | None:
-        """How often the cell is to be halved for the error asked for; None if that is not known."""
+        """How often the cell is to be halved for the error asked for, on three grids at least; None
+        if that is not known."""
         wanted = [estimate.levels(self.target.error) for estimate in self.estimates]
         known = [levels for levels in (*wanted, self.levels_apart) if levels is not None]
-        return max(known) if len(known) == len(wanted) + 1 else None
+        if len(known) <= len(wanted):
+            return None
+        return max(*known, ORDER_NEEDS - len(self.pilots))
 
     def seconds(self, levels: int) -> float:
         """Predicted wall time of a run whose cell is halved so many times more, s."""
