@@ -19,6 +19,7 @@ from .ledger import Ledger
 from .materials import DruckerPrager, Elastic, Material, Rigid
 from .method import Method
 from .outline import Outline
+from .planning import Answer, Plan, plan
 from .recording import Recording
 from .run import Run, open
 from .scene import Points, Scene
@@ -33,6 +34,7 @@ from .walls import Coulomb, Fixed, Free, Roller, Walls
 __version__ = version("gimpslope")
 
 __all__ = [
+    "Answer",
     "Coulomb",
     "Diverged",
     "DruckerPrager",
@@ -47,6 +49,7 @@ __all__ = [
     "Method",
     "NotSettledError",
     "Outline",
+    "Plan",
     "Points",
     "Recording",
     "Rigid",
@@ -64,6 +67,7 @@ __all__ = [
     "kernel",
     "load",
     "open",
+    "plan",
     "simulate",
     "stones",
 ]
