@@ -26,8 +26,11 @@ class Method(Record):
     Parameters
     ----------
     shape : shape functions, one of `gimpslope.kernel.shapes()`: "linear" (plain MPM, eq. 8),
-        "ugimp" (GIMP with the points' first domains, eqs. 14-16) or "cpgimp" (GIMP with domains
-        that follow the deformation)
+        "ugimp" (GIMP with the points' first domains, eqs. 14-16), "cpgimp" (GIMP with domains
+        that follow the deformation) or "quadratic_bspline" (Steffen, Kirby and Berzins 2008, IJNME
+        76:922). A spline's nodes go on beyond a free surface; behind a wall the node goes on in
+        line with the two before it, which leaves hats in the half cell at the wall (Steffen,
+        Wallstedt, Guilkey, Kirby and Berzins 2008, CMES 31:107)
     scheme : order of the sub-steps: "usf" (stress first, eqs. 18-26)
     alpha : share of PIC in the velocity of a point per step, in [0, 1]: 0 is FLIP, 1 is PIC
         (eq. 26). Its effect grows as the step shrinks; the next two do not depend on the step

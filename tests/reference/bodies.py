@@ -139,11 +139,17 @@ class Whole:
         self.spin += float(cross(place - self.centre, impulse)) / self.inertia
 
 
-def shares(bodies: Sequence[Body], shape: str, lines: tuple[Array, Array], cell: float) -> Array:
+def shares(
+    bodies: Sequence[Body],
+    shape: str,
+    lines: tuple[Array, Array],
+    cell: float,
+    walls: Sequence[Wall],
+) -> Array:
     """The share of each node's cell that each body fills, (n_bodies, n_nodes)."""
     return np.array(
         [
-            body.volume @ weights(shape, body.points()[0], body.half_length, lines, cell)[0]
+            body.volume @ weights(shape, body.points()[0], body.half_length, lines, cell, walls)[0]
             for body in bodies
         ]
     ) / (cell**2)

@@ -66,7 +66,7 @@ class Reference:
         time_step: tuple[str, float],
         margin: int = 8,
     ) -> None:
-        _check("shape", shape, "linear", "ugimp", "cpgimp")
+        _check("shape", shape, "linear", "ugimp", "cpgimp", "quadratic_bspline")
         _check(
             "domain_update", domain_update, "none", "jacobian", "stretch", "deformation_diagonal"
         )
@@ -93,7 +93,7 @@ class Reference:
         self.rigid = np.isin(self.material, rigid)
         number = np.full(n, -1) if stone is None else np.array(stone, int)
         square = np.repeat(np.sqrt(self.volume)[:, None] / 2, 2, axis=1)
-        domain = square if shape == "linear" else self.half_length
+        domain = self.half_length if "gimp" in shape else square
         self.bodies = [
             Body(
                 np.flatnonzero(number == k),
@@ -155,7 +155,9 @@ class Reference:
         if kind == "relaxation_time":
             return dt / value
         h = self.cell
-        lp = 0.0 if self.shape == "linear" else float(self.first_half_length.mean())
+        lp = {"linear": 0.0, "quadratic_bspline": h / 2}.get(
+            self.shape, float(self.first_half_length.mean())
+        )
         return value * dt / (h**2 * (1 / 6 + lp**2 / (3 * h**2)))
 
     def advance(self, steps: int) -> None:
@@ -172,7 +174,9 @@ class Reference:
 
     def _step(self) -> None:
         dt = self.time_step
-        s, sx, sy = weights(self.shape, self.position, self.half_length, self.lines, self.cell)
+        s, sx, sy = weights(
+            self.shape, self.position, self.half_length, self.lines, self.cell, self.walls
+        )
         if not np.allclose(s.sum(axis=1), 1.0, atol=1e-9):
             raise RuntimeError("a point has left the grid; make margin larger")
 
@@ -183,7 +187,7 @@ class Reference:
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
         held, contacts = [], []
         if self.bodies:
-            share = shares(self.bodies, self.shape, self.lines, self.cell)
+            share = shares(self.bodies, self.shape, self.lines, self.cell, self.walls)
             soil = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
             held = list(held_nodes(share, soil))
             contacts = list(overlaps(self.bodies, share, self.nodes))

@@ -119,6 +119,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "flip": ({"blend": ("alpha", 0.0)}, "base"),
     "pic": ({"blend": ("alpha", 1.0)}, "base"),
     "linear": ({"shape": "linear"}, "base"),
+    "quadratic_bspline": ({"shape": "quadratic_bspline"}, "linear"),
     "linear_flip": ({"shape": "linear", "blend": ("alpha", 0.0)}, "linear"),
     "own_half_lengths": (
         {
