@@ -240,7 +240,7 @@ def expected(name: str) -> State:
     plain = twin_of(scene_of(name))
     nearest, met = np.inf, 0
     for _ in range(BASE["steps"]):
-        share = shares(plain.bodies, plain.shape, plain.lines, plain.cell)
+        share = shares(plain.bodies, plain.shape, plain.lines, plain.cell, plain.walls)
         nearest = min(nearest, distance_to_a_tie(share))
         met += len(list(overlaps(plain.bodies, share, plain.nodes)))
         plain.advance(1)
