@@ -5,7 +5,9 @@
 
 namespace gimpslope {
 
-enum class SchemeKind { usf };
+/// Order of the sub-steps: stress first, stress last, or stress last from velocities that have gone
+/// through the points and back.
+enum class SchemeKind { usf, usl, musl };
 
 /// How the half-lengths of a cpGIMP domain follow the deformation.
 enum class DomainUpdate { none, jacobian, stretch, deformation_diagonal };

@@ -111,6 +111,8 @@ Bodies Solver::bodies_of(const InitialPoints& given) const {
             "stone", number, "a stone of one material where that is rigid");
   require(method_.precision == Precision::double_, "precision", "single",
           "double with rigid stones");
+  require(method_.scheme == SchemeKind::usf, "scheme",
+          method_.scheme == SchemeKind::usl ? "usl" : "musl", "usf with rigid stones");
   return Bodies(body, method_.threads);
 }
 
@@ -245,15 +247,10 @@ void Solver::step(double dt, double whole, bool wants_energies) {
     fail("the step of " + text(dt) + " s is too long for the velocity blend", -1);
   const double factor = gravity_.factor(time_ + dt);
   const bool courant = method_.time_step.kind == TimeStep::Kind::courant;
-  const StepInput input{dt,
-                        share,
-                        gravity_.x * factor,
-                        gravity_.y * factor,
-                        gravity_.x,
-                        gravity_.y,
-                        damping_.local,
-                        courant,
-                        wants_energies};
+  const StepInput input{
+      dt,         share,         gravity_.x * factor, gravity_.y * factor,
+      gravity_.x, gravity_.y,    damping_.local,      method_.scheme != SchemeKind::usf,
+      courant,    wants_energies};
   with_kernel(
       [&](const auto& kernel, const auto& view) { kernel.step(view, input, reports_.data()); });
   single_ahead_ = single_ != nullptr;

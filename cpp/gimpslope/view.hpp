@@ -166,6 +166,7 @@ struct StepInput {
   double gravity_x, gravity_y;            // that acts
   double full_gravity_x, full_gravity_y;  // at the end of its ramp
   double local_damping;
+  bool stress_last;  // forces come from the stress before the step
   bool wants_speeds, wants_energies;
 };
 

@@ -48,7 +48,9 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
   method.volumetric_strain = parse<VolumetricStrain>(
       "volumetric_strain", volumetric_strain,
       {{"point", VolumetricStrain::point}, {"cell_average", VolumetricStrain::cell_average}});
-  method.scheme = parse<SchemeKind>("scheme", scheme, {{"usf", SchemeKind::usf}});
+  method.scheme = parse<SchemeKind>(
+      "scheme", scheme,
+      {{"usf", SchemeKind::usf}, {"usl", SchemeKind::usl}, {"musl", SchemeKind::musl}});
   method.blend = blend_of(blended);
   method.time_step = time_step_of(step);
   method.precision = parse<Precision>(

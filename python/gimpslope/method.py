@@ -9,7 +9,7 @@ from . import _check, _core
 from ._record import Record
 
 Shape = str  # one of `gimpslope.kernel.shapes()`
-Scheme = Literal["usf"]
+Scheme = Literal["usf", "usl", "musl"]
 DomainUpdate = Literal["jacobian", "stretch", "deformation_diagonal"]
 VolumeUpdate = Literal["linear", "exponential"]
 Precision = Literal["double", "single"]
@@ -31,7 +31,11 @@ class Method(Record):
         76:922). A spline's nodes go on beyond a free surface; behind a wall the node goes on in
         line with the two before it, which leaves hats in the half cell at the wall (Steffen,
         Wallstedt, Guilkey, Kirby and Berzins 2008, CMES 31:107)
-    scheme : order of the sub-steps: "usf" (stress first, eqs. 18-26)
+    scheme : order of the sub-steps: "usf" (stress first, eqs. 18-26), "usl" (stress last, from the
+        velocities that the nodes have come to; Sulsky, Chen and Schreyer 1994, CMAME 118:179) or
+        "musl" (stress last, from those that the points bring back to the nodes; Sulsky, Zhou and
+        Schreyer 1995, CPC 87:236). "usl" is unstable where nodes hold little mass (Bardenhagen
+        2002, JCP 180:383). With rigid stones "usf" alone
     alpha : share of PIC in the velocity of a point per step, in [0, 1]: 0 is FLIP, 1 is PIC
         (eq. 26). Its effect grows as the step shrinks; the next two do not depend on the step
     viscosity : the blend as a kinematic viscosity nu, m2/s, >= 0:

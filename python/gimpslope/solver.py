@@ -39,8 +39,9 @@ class Solver:
     set it whole. The kernel keeps its
     points sorted by cell: `view` and `numbers` show them as they lie in memory.
 
-    A step takes its strains from the velocities at its start, so velocities belong to half a step
-    before the positions, stresses and volumes to a whole step before. For second order in the step,
+    A step of the scheme "usf" takes its strains from the velocities at its start, so velocities
+    belong to half a step before the positions, stresses and volumes to a whole step before; with
+    "usl" and "musl" velocities belong to half a step before all else. For second order in the step,
     give them so.
 
     Parameters

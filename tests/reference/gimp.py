@@ -1,4 +1,5 @@
-"""The material points and their step: update stress first (USF)."""
+"""The material points and their step: update stress first (USF), last (USL), or last from the points'
+new velocities (MUSL)."""
 
 from collections.abc import Iterator, Sequence
 
@@ -62,6 +63,7 @@ class Reference:
         domain_update: str = "none",
         volume_update: str = "linear",
         volumetric_strain: str = "point",
+        scheme: str = "usf",
         blend: tuple[str, float],
         time_step: tuple[str, float],
         margin: int = 8,
@@ -72,6 +74,7 @@ class Reference:
         )
         _check("volume_update", volume_update, "linear", "exponential")
         _check("volumetric_strain", volumetric_strain, "point", "cell_average")
+        _check("scheme", scheme, "usf", "usl", "musl")
         _check("blend", blend[0], "alpha", "viscosity", "relaxation_time")
         _check("time_step", time_step[0], "fixed", "courant")
         self.position = np.array(position, float)
@@ -112,7 +115,7 @@ class Reference:
         self.volumetric_strain = volumetric_strain
         self.origin = np.asarray(origin)
         self.ledger = Ledger()
-        self.blend, self.step_rule = blend, time_step
+        self.scheme, self.blend, self.step_rule = scheme, blend, time_step
         self.set_gravity(0.0, 0.0, 0.0)
         self.set_damping(0.0, False)
 
@@ -194,23 +197,9 @@ class Reference:
         for stone, of in zip(self.bodies, held, strict=True):
             v[of] = stone.velocity_at(self.nodes[of])
 
-        velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
-        cells = np.unique(
-            np.floor((self.position - self.origin) / self.cell), axis=0, return_inverse=True
-        )[1].ravel()
-        if self.volumetric_strain == "cell_average":
-            trace = np.trace(velocity_gradient, axis1=1, axis2=2)
-            change = (self._cell_mean(trace, cells) - trace) / 2
-            velocity_gradient = velocity_gradient + change[:, None, None] * np.eye(2)
-        velocity_gradient[self.rigid] = 0.0
-        self._deform(velocity_gradient, dt)
-
-        sigma = _tensor(self.stress)[:, :2, :2]
-        if self.volumetric_strain == "cell_average":
-            mean = np.trace(sigma, axis1=1, axis2=2) / 2
-            sigma = sigma + (self._cell_mean(mean, cells) - mean)[:, None, None] * np.eye(2)
-        sigma = sigma * np.where(self.rigid, 0.0, self.volume)[:, None, None]
-        internal = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
+        if self.scheme == "usf":
+            self._strain(sx, sy, v, dt)
+        internal = self._internal_force(sx, sy)
         share_of_gravity = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
         weight = mass[:, None] * self.gravity * share_of_gravity
         body = s.T @ (soft_mass[:, None] * self.body_force)
@@ -266,6 +255,7 @@ class Reference:
             body=body,
             damping=damping,
             held=np.any(held, axis=0) if held else np.zeros(len(mass), bool),
+            stress_first=self.scheme == "usf",
         )
 
         alpha = self.alpha(dt)
@@ -273,6 +263,12 @@ class Reference:
         self.ledger.transfer += self._kinetic_energy_of_soil()
         self.velocity = alpha * pic + (1 - alpha) * flip
         self.ledger.transfer -= self._kinetic_energy_of_soil()
+        if self.scheme == "usl":
+            self._strain_last(sx, sy, v_new, v_new, internal, dt)
+        elif self.scheme == "musl":
+            back = _divide(s.T @ (soft_mass[:, None] * self.velocity), mass)
+            back = hold_velocity(back, self.node_velocity, self.nodes, self.walls, self.cell)
+            self._strain_last(sx, sy, back, v_new, internal, dt)
         self.position = self.position + dt * pic
         for stone, whole, drag_of in zip(self.bodies, wholes, drags, strict=True):
             taken, worked, damped = stone.follow(
@@ -308,6 +304,41 @@ class Reference:
             of = (cells == cell) & ~self.rigid
             mean[of] = np.average(values[of], weights=self.volume[of])
         return mean
+
+    def _cells(self) -> NDArray[np.int64]:
+        """A number for the cell of each point."""
+        places = np.floor((self.position - self.origin) / self.cell)
+        return np.unique(places, axis=0, return_inverse=True)[1].ravel()
+
+    def _strain(self, sx: Array, sy: Array, v: Array, dt: float) -> Array:
+        """Deform by the node velocities v; gives the strain increments (n, 2, 2)."""
+        gradient = np.stack([sx @ v, sy @ v], axis=2)
+        if self.volumetric_strain == "cell_average":
+            trace = np.trace(gradient, axis1=1, axis2=2)
+            change = (self._cell_mean(trace, self._cells()) - trace) / 2
+            gradient = gradient + change[:, None, None] * np.eye(2)
+        gradient[self.rigid] = 0.0
+        self._deform(gradient, dt)
+        return (gradient + np.swapaxes(gradient, 1, 2)) * dt / 2
+
+    def _strain_last(
+        self, sx: Array, sy: Array, v: Array, v_new: Array, internal: Array, dt: float
+    ) -> None:
+        """Deform by v after forces that belong to the stress before; v_new moves the points."""
+        before = self.stress * self.volume[:, None]
+        strain = self._strain(sx, sy, v, dt)
+        late = _tensor(self.stress * self.volume[:, None] - before)[:, :2, :2]
+        self.ledger.integration -= float(np.sum(late * strain))
+        self.ledger.transfer += float(dt * np.sum(internal * (v - v_new)))
+
+    def _internal_force(self, sx: Array, sy: Array) -> Array:
+        sigma = _tensor(self.stress)[:, :2, :2]
+        if self.volumetric_strain == "cell_average":
+            mean = np.trace(sigma, axis1=1, axis2=2) / 2
+            change = self._cell_mean(mean, self._cells()) - mean
+            sigma = sigma + change[:, None, None] * np.eye(2)
+        sigma = sigma * np.where(self.rigid, 0.0, self.volume)[:, None, None]
+        return np.asarray(-(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1]))
 
     def _deform(self, velocity_gradient: Array, dt: float) -> None:
         """Volume, deformation gradient and stress from the velocity gradient (n, 2, 2)."""

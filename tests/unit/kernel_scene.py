@@ -34,6 +34,7 @@ OPTIONS = (
     "domain_update",
     "volume_update",
     "volumetric_strain",
+    "scheme",
     "blend",
 )
 
