@@ -79,6 +79,8 @@ void Grid::fit(Cell low, Cell high) {
     field->assign(4 * columns * rows, 0.0);
   if (keeps_body_forces_) body_.assign(4 * columns * rows, 0.0);
   if (keeps_cells_) cells_.assign(4 * columns * rows, 0.0);
+  if (keeps_terms_)
+    for (Buffer<double>* field : {&terms_, &spread_}) field->assign(4 * columns * rows, 0.0);
 }
 
 void Grid::keep(Buffer<double>& update, Cell low, Cell high) const {
@@ -114,6 +116,8 @@ GridView Grid::view() {
                 update_.data(),
                 body_.empty() ? nullptr : body_.data(),
                 cells_.empty() ? nullptr : cells_.data(),
+                terms_.empty() ? nullptr : terms_.data(),
+                spread_.empty() ? nullptr : spread_.data(),
                 {},
                 {},
                 {}};
@@ -128,7 +132,8 @@ GridView Grid::view() {
 
 std::int64_t Grid::bytes() const {
   std::int64_t total = active_.capacity() * sizeof(NodeRange);
-  for (const Buffer<double>* field : {&momentum_, &velocity_, &force_, &update_, &body_, &cells_})
+  for (const Buffer<double>* field :
+       {&momentum_, &velocity_, &force_, &update_, &body_, &cells_, &terms_, &spread_})
     total += sizeof(double) * field->capacity();
   return total;
 }

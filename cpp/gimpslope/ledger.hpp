@@ -20,8 +20,8 @@
 // dt f . v' = -sum V s : (strain increment), and gravity dt m g . v+. `integration` is what a
 // finite step leaves over; it swings at first order in dt and vanishes with it.
 //
-// Where the stress is updated last, the forces of the stress s- before the step do their work at the
-// velocity v* of the strain, which is v+ or, in MUSL, what the points bring back of it:
+// Where the stress is updated last, the forces of the stress s- before the step do their work at
+// the velocity v* of the strain, which is v+ or, in MUSL, what the points bring back of it:
 //
 //   transfer     in addition dt (internal force) . (v* - v+)
 //   integration  V w(ds) + dt (internal force + m g) . dv / 2

@@ -233,7 +233,8 @@ class Solver:
 
         Names: position, velocity, body_force (n, 2); stress (n, 4); volume, mass, plastic_strain
         (n,); half_length (n, 2), with shape "ugimp" or "cpgimp"; deformation_gradient (n, 4) as
-        xx, xy, yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
+        xx, xy, yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal";
+        affine (n, 4), with transfer "apic".
         """
         return self._core.view(name)
 
@@ -281,6 +282,20 @@ class Solver:
     @body_force.setter
     def body_force(self, values: npt.ArrayLike) -> None:
         self._set("body_force", values, 2)
+
+    @property
+    def affine(self) -> FloatArray:
+        """B of Jiang and others 2015, the moment of the nodes' velocity about each point, xx, xy,
+        yx, yy (velocity by arm), m2/s, shape (n, 4); with transfer "apic" alone.
+
+        The angular momentum of a point is m (x v_y - y v_x + B_yx - B_xy). Setting velocities sets
+        it to zero.
+        """
+        return self._core.get("affine")
+
+    @affine.setter
+    def affine(self, values: npt.ArrayLike) -> None:
+        self._set("affine", values, 4)
 
     @property
     def volume(self) -> FloatArray:
@@ -353,7 +368,7 @@ class Solver:
 
     @property
     def alpha(self) -> float:
-        """Share of PIC in the next step."""
+        """Share of PIC in the next step; 1 with any transfer but "flip"."""
         return self._core.alpha
 
     @property

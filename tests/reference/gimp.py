@@ -1,5 +1,5 @@
-"""The material points and their step: update stress first (USF), last (USL), or last from the points'
-new velocities (MUSL)."""
+"""The material points and their step: update stress first (USF), last (USL), or last from the
+velocities that the points bring back (MUSL)."""
 
 from collections.abc import Iterator, Sequence
 
@@ -64,6 +64,8 @@ class Reference:
         volume_update: str = "linear",
         volumetric_strain: str = "point",
         scheme: str = "usf",
+        transfer: str = "flip",
+        order: int = 1,
         blend: tuple[str, float],
         time_step: tuple[str, float],
         margin: int = 8,
@@ -75,6 +77,7 @@ class Reference:
         _check("volume_update", volume_update, "linear", "exponential")
         _check("volumetric_strain", volumetric_strain, "point", "cell_average")
         _check("scheme", scheme, "usf", "usl", "musl")
+        _check("transfer", transfer, "flip", "apic", "xpic")
         _check("blend", blend[0], "alpha", "viscosity", "relaxation_time")
         _check("time_step", time_step[0], "fixed", "courant")
         self.position = np.array(position, float)
@@ -116,6 +119,8 @@ class Reference:
         self.origin = np.asarray(origin)
         self.ledger = Ledger()
         self.scheme, self.blend, self.step_rule = scheme, blend, time_step
+        self.transfer, self.order = transfer, order
+        self.affine = np.zeros((n, 2, 2))  # B of APIC
         self.set_gravity(0.0, 0.0, 0.0)
         self.set_damping(0.0, False)
 
@@ -185,7 +190,7 @@ class Reference:
 
         soft_mass = np.where(self.rigid, 0.0, self.mass)
         mass = s.T @ soft_mass
-        momentum = s.T @ (soft_mass[:, None] * self.velocity)
+        momentum = self._momentum(s)
         v_raw = _divide(momentum, mass)
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
         held, contacts = [], []
@@ -258,18 +263,16 @@ class Reference:
             stress_first=self.scheme == "usf",
         )
 
-        alpha = self.alpha(dt)
-        pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
         self.ledger.transfer += self._kinetic_energy_of_soil()
-        self.velocity = alpha * pic + (1 - alpha) * flip
+        self._take_velocity(s, mass, v_raw, v_new, dt)
         self.ledger.transfer -= self._kinetic_energy_of_soil()
         if self.scheme == "usl":
             self._strain_last(sx, sy, v_new, v_new, internal, dt)
         elif self.scheme == "musl":
-            back = _divide(s.T @ (soft_mass[:, None] * self.velocity), mass)
+            back = _divide(self._momentum(s), mass)
             back = hold_velocity(back, self.node_velocity, self.nodes, self.walls, self.cell)
             self._strain_last(sx, sy, back, v_new, internal, dt)
-        self.position = self.position + dt * pic
+        self.position = self.position + dt * s @ v_new
         for stone, whole, drag_of in zip(self.bodies, wholes, drags, strict=True):
             taken, worked, damped = stone.follow(
                 whole,
@@ -304,6 +307,34 @@ class Reference:
             of = (cells == cell) & ~self.rigid
             mean[of] = np.average(values[of], weights=self.volume[of])
         return mean
+
+    def _momentum(self, s: Array) -> Array:
+        """That of the soil at the nodes, with its affine motion about each point."""
+        brought = s.T @ (np.where(self.rigid, 0.0, self.mass)[:, None] * self.velocity)
+        if self.transfer == "apic":
+            arm, weighted = self._arms(s)
+            around = self.affine @ np.linalg.pinv(weighted @ arm) @ weighted
+            brought = brought + np.tensordot(self.mass, around, axes=1).T
+        return np.asarray(brought)
+
+    def _arms(self, s: Array) -> tuple[Array, Array]:
+        """From each point to the nodes, (n, nodes, 2), and times their weights, (n, 2, nodes)."""
+        arm = self.nodes[None] - self.position[:, None]
+        return arm, np.swapaxes(s[:, :, None] * arm, 1, 2)
+
+    def _take_velocity(self, s: Array, mass: Array, v_raw: Array, v_new: Array, dt: float) -> None:
+        if self.transfer == "flip":
+            alpha = self.alpha(dt)
+            pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
+            self.velocity = alpha * pic + (1 - alpha) * flip
+        elif self.transfer == "apic":
+            self.affine = np.swapaxes(self._arms(s)[1] @ v_new, 1, 2)
+            self.velocity = s @ v_new
+        else:
+            to_nodes = np.where(mass > 0, 1 / np.where(mass > 0, mass, 1.0), 0.0)[:, None]
+            smooth = s @ (to_nodes * s.T * self.mass)  # S S+, from points to points
+            noise = np.linalg.matrix_power(np.eye(len(s)) - smooth, self.order)
+            self.velocity = self.velocity - noise @ self.velocity + s @ (v_new - v_raw)
 
     def _cells(self) -> NDArray[np.int64]:
         """A number for the cell of each point."""
@@ -408,7 +439,7 @@ class Reference:
             return
         energy = self.kinetic_energy()
         if energy < self.last_kinetic_energy:
-            self.velocity = np.zeros_like(self.velocity)
+            self.velocity, self.affine = np.zeros_like(self.velocity), np.zeros_like(self.affine)
             for body in self.bodies:
                 body.stop()
             self.ledger.damping += energy

@@ -35,6 +35,8 @@ OPTIONS = (
     "volume_update",
     "volumetric_strain",
     "scheme",
+    "transfer",
+    "order",
     "blend",
 )
 

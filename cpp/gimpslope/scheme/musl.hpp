@@ -4,6 +4,7 @@
 
 #include "../sweep/motion.hpp"
 #include "../sweep/nodes.hpp"
+#include "../sweep/null_space.hpp"
 #include "../sweep/renew.hpp"
 #include "../sweep/stress_last.hpp"
 
@@ -18,10 +19,12 @@ struct Musl {
     together(*view.team, [&](int thread) {
       Stopwatch watch(thread == 0 ? view.seconds : nullptr);
       start_rows(view, thread);
+      sum_terms<Shape, kOwnDomain>(view, input.order, thread);
       watch.lap(&Seconds::nodes);
       bring_forces<Shape, kOwnDomain>(view, thread);
       watch.lap(&Seconds::stress);
       finish_rows<Afterwards::forces_kept>(view, input, thread);
+      add_terms(view, thread);
       watch.lap(&Seconds::nodes);
       for_each_slab(view, thread, [&](int slab) {
         Report report;
@@ -57,10 +60,10 @@ struct Musl {
     Weights<Shape, Need::values> weights;
     evaluate<Shape, kOwnDomain>(view, begin, n, weights);
     Change change;
-    gather_change(view, n, weights, change);
+    take_change(view, begin, n, weights, change);
     for (int k = 0; k < n; ++k) change.x[k] = change.y[k] = 0.0;
     move_points(view, begin, n, input.alpha, change, report);
-    if (report.lost < 0) scatter_momentum(view, begin, n, weights);
+    if (report.lost < 0) bring_momentum(view, begin, n, weights);
   }
 
   /// New places, with the velocities that the points have already.

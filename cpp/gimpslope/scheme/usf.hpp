@@ -8,6 +8,7 @@
 #include "../sweep/loops.hpp"
 #include "../sweep/motion.hpp"
 #include "../sweep/nodes.hpp"
+#include "../sweep/null_space.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -20,6 +21,7 @@ struct Usf {
     together(*view.team, [&](int thread) {
       Stopwatch watch(thread == 0 ? view.seconds : nullptr);
       start_rows(view, thread);
+      sum_terms<Shape, kOwnDomain>(view, input.order, thread);
       with_bodies(view, [&](const auto& doubles) {
         hold_nodes_of_bodies<Shape, kOwnDomain>(doubles, thread);
       });
@@ -29,6 +31,7 @@ struct Usf {
       with_bodies(view,
                   [&](const auto& doubles) { take_forces_of_bodies(doubles, input, thread); });
       finish_rows<Afterwards::none>(view, input, thread);
+      add_terms(view, thread);
       with_bodies(view, [&](const auto& doubles) { move_bodies(doubles, input, thread); });
       watch.lap(&Seconds::nodes);
       for_each_slab(view, thread, [&](int slab) {

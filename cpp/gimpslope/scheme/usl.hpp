@@ -1,10 +1,11 @@
-// Update stress last (Sulsky, Chen and Schreyer 1994; Bardenhagen 2002, section 2): the strain of a
+// Update stress last (Sulsky, Chen and Schreyer 1994; Bardenhagen 2002): the strain of a
 // step comes from the velocities that the nodes have come to, and nothing smooths those of a node
 // that holds little mass.
 #pragma once
 
 #include "../sweep/motion.hpp"
 #include "../sweep/nodes.hpp"
+#include "../sweep/null_space.hpp"
 #include "../sweep/stress_last.hpp"
 
 namespace gimpslope {
@@ -18,10 +19,12 @@ struct Usl {
     together(*view.team, [&](int thread) {
       Stopwatch watch(thread == 0 ? view.seconds : nullptr);
       start_rows(view, thread);
+      sum_terms<Shape, kOwnDomain>(view, input.order, thread);
       watch.lap(&Seconds::nodes);
       bring_forces<Shape, kOwnDomain>(view, thread);
       watch.lap(&Seconds::stress);
       finish_rows<Afterwards::shown>(view, input, thread);
+      add_terms(view, thread);
       watch.lap(&Seconds::nodes);
       average_strains<Shape, kOwnDomain>(view, thread);
       for_each_slab(view, thread, [&](int slab) {

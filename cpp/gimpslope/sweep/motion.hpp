@@ -1,6 +1,7 @@
 // What a block of points does between its nodes before and after it moves.
 #pragma once
 
+#include "affine.hpp"
 #include "bodies.hpp"
 #include "energies.hpp"
 #include "loops.hpp"
@@ -9,6 +10,22 @@
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+/// Mass and momentum of a block, with that of its affine motion where there is one.
+template <class Shape, class Real>
+void bring_momentum(const View<Real>& view, int begin, int n,
+                    const Weights<Shape, Need::values>& weights) {
+  scatter_momentum(view, begin, n, weights);
+  if (view.points.affine[0] != nullptr) scatter_affine(view, begin, n, weights);
+}
+
+/// What the nodes add to the motion of a block, and their affine motion where it is kept.
+template <class Shape, class Real>
+void take_change(const View<Real>& view, int begin, int n,
+                 const Weights<Shape, Need::values>& weights, Change& change) {
+  gather_change(view, n, weights, change);
+  if (view.points.affine[0] != nullptr) gather_affine(view, begin, n, weights);
+}
 
 /// Mass and momentum of all points at cleared nodes.
 template <class Shape, bool kOwnDomain, class Real>
@@ -19,7 +36,7 @@ void bring_all(const View<Real>& view) {
         if (is_rigid(view, block)) return;
         Weights<Shape, Need::values> weights;
         evaluate<Shape, kOwnDomain>(view, block.begin, block.end - block.begin, weights);
-        scatter_momentum(view, block.begin, block.end - block.begin, weights);
+        bring_momentum(view, block.begin, block.end - block.begin, weights);
       });
     });
   });
@@ -34,7 +51,7 @@ void settle_block(const View<Real>& view, const StepInput& input, const Block& b
   if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
   if (report.lost >= 0) return;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  scatter_momentum(view, begin, n, weights);
+  bring_momentum(view, begin, n, weights);
   if (input.wants_speeds) add_speeds(view, block, report.speeds);
   if constexpr (!PointsView<Real>::relative)
     if (input.wants_energies)
@@ -49,7 +66,7 @@ void move_block(const View<Real>& view, const StepInput& input, const Block& blo
   Weights<Shape, Need::values> weights;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   Change change;
-  gather_change(view, n, weights, change);
+  take_change(view, begin, n, weights, change);
   move_points(view, begin, n, input.alpha, change, report);
   if (report.lost >= 0) return;
   settle_block<Shape, kOwnDomain>(view, input, block, weights, report);

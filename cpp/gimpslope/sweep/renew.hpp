@@ -1,5 +1,5 @@
 // The nodes of a MUSL step a second time, with the momentum that the points' new velocities bring
-// to them (Sulsky, Zhou and Schreyer 1995, section 3.3).
+// to them (Sulsky, Zhou and Schreyer 1995).
 #pragma once
 
 #include "nodes.hpp"
