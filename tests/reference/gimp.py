@@ -264,7 +264,7 @@ class Reference:
         )
 
         self.ledger.transfer += self._kinetic_energy_of_soil()
-        self._take_velocity(s, mass, v_raw, v_new, dt)
+        self._take_velocity(s, mass, v_raw, v, v_new, dt)
         self.ledger.transfer -= self._kinetic_energy_of_soil()
         if self.scheme == "usl":
             self._strain_last(sx, sy, v_new, v_new, internal, dt)
@@ -322,7 +322,9 @@ class Reference:
         arm = self.nodes[None] - self.position[:, None]
         return arm, np.swapaxes(s[:, :, None] * arm, 1, 2)
 
-    def _take_velocity(self, s: Array, mass: Array, v_raw: Array, v_new: Array, dt: float) -> None:
+    def _take_velocity(
+        self, s: Array, mass: Array, v_raw: Array, v: Array, v_new: Array, dt: float
+    ) -> None:
         if self.transfer == "flip":
             alpha = self.alpha(dt)
             pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
@@ -332,9 +334,13 @@ class Reference:
             self.velocity = s @ v_new
         else:
             to_nodes = np.where(mass > 0, 1 / np.where(mass > 0, mass, 1.0), 0.0)[:, None]
-            smooth = s @ (to_nodes * s.T * self.mass)  # S S+, from points to points
-            noise = np.linalg.matrix_power(np.eye(len(s)) - smooth, self.order)
-            self.velocity = self.velocity - noise @ self.velocity + s @ (v_new - v_raw)
+            at_walls = near_walls(self.nodes, self.walls, self.cell)
+            for axis in (0, 1):
+                held = at_walls & (v[:, axis] == 0)
+                smooth = s @ np.where(held[:, None], 0.0, to_nodes * s.T * self.mass)  # S S+
+                noise = np.linalg.matrix_power(np.eye(len(s)) - smooth, self.order)
+                self.velocity[:, axis] -= noise @ self.velocity[:, axis]
+            self.velocity = self.velocity + s @ (v_new - v)
 
     def _cells(self) -> NDArray[np.int64]:
         """A number for the cell of each point."""

@@ -1,10 +1,11 @@
 // XPIC: PIC that leaves out less of the points' velocities V, the noise alone that no node sees
 // (Hammerquist and Nairn 2017, doi 10.1016/j.cma.2017.01.035). With S from nodes to points and S+,
-// the mean of the points at each node, a step of order m makes of them
+// the mean of the points at each node within the walls, a step of order m makes of them
 //
-//   V <- (1 - (1 - S S+)^m) V + S (v+ - v-) = S (v+ + sum of (1 - S+ S)^k v-, k = 1 to m - 1)
+//   V <- (1 - (1 - S S+)^m) V + S (v+ - v') = S (v+ + sum of (1 - S+ S)^k v', k = 1 to m - 1)
 //
-// with v- = S+ V. Order 1 is PIC.
+// with v' = S+ V. Order 1 is PIC. Walls hold in every term what they hold in v', or else motion
+// that ends at a wall would be taken for noise. Places move by S v+ dt, as with any other transfer.
 #pragma once
 
 #include "loops.hpp"
@@ -15,12 +16,10 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// The terms begin with v-.
+/// The terms begin with v'.
 inline void start_terms(const GridView& g, int row) {
-  for (int k = row * g.stride + g.active[row].begin; k < row * g.stride + g.active[row].end; ++k) {
-    const Pair v = velocity_of(g.momentum + 4 * k);
-    quad(g.terms + 4 * k) = Quad{v[0], v[1], 0.0, 0.0};
-  }
+  for (int k = row * g.stride + g.active[row].begin; k < row * g.stride + g.active[row].end; ++k)
+    quad(g.terms + 4 * k) = Quad{g.velocity[4 * k], g.velocity[4 * k + 2], 0.0, 0.0};
 }
 
 /// m S u of the present term u to the nodes.
@@ -46,15 +45,21 @@ template <class Shape, bool kOwnDomain, class Real>
 
 /// The next term, u - S+ S u, and the sum of those so far.
 inline void next_term(const GridView& g, int row) {
-  for (int k = row * g.stride + g.active[row].begin; k < row * g.stride + g.active[row].end; ++k) {
-    double *spread = g.spread + 4 * k, *term = g.terms + 4 * k;
-    const double mass = g.momentum[4 * k], inverse = mass > 0.0 ? 1.0 / mass : 0.0;
-    for (int c = 0; c < 2; ++c) {
-      term[c] -= inverse * spread[c];
-      term[c + 2] += term[c];
-    }
+  const auto subtract = [&](int node, double share_x, double share_y) {
+    const double mass = g.momentum[4 * node], inverse = mass > 0.0 ? 1.0 / mass : 0.0;
+    double *spread = g.spread + 4 * node, *term = g.terms + 4 * node;
+    term[0] -= share_x * inverse * spread[0];
+    term[1] -= share_y * inverse * spread[1];
+    term[2] += term[0];
+    term[3] += term[1];
     quad(spread) = Quad{};
-  }
+  };
+  for_each_node(
+      g, row, [&](int node) { subtract(node, 1.0, 1.0); },
+      [&](int node, int /*column*/) {
+        const double* shown = g.velocity + 4 * node;
+        subtract(node, shown[0] != 0.0, shown[2] != 0.0);
+      });
 }
 
 /// The sum of the terms of the points at their places, once mass and momentum are at the nodes.
