@@ -26,6 +26,9 @@
 //   transfer     in addition dt (internal force) . (v* - v+)
 //   integration  V w(ds) + dt (internal force + m g) . dv / 2
 //                - (V s - (V s-)) : (strain increment)
+//
+// With PIC and XPIC the points around a node at a wall keep the motion that they have off the wall,
+// so that their mean v- never comes to rest: impact takes it at every step, transfer gives it back.
 #pragma once
 
 #include "instruction_set.hpp"
