@@ -150,13 +150,17 @@ class Whole:
 
 
 def shares(
-    bodies: Sequence[Body], shape: str, lines: tuple[Array, Array], cell: float
+    bodies: Sequence[Body],
+    shape: str,
+    lines: tuple[Array, Array],
+    cell: float,
+    walls: Sequence[Wall],
 ) -> tuple[Array, Array]:
     """The share of each node's cell that each body fills, (n_bodies, n_nodes), and its gradient a
     cell, (n_bodies, n_nodes, 2)."""
     share, slope = [], []
     for body in bodies:
-        s, sx, sy = weights(shape, body.points()[0], body.half_length, lines, cell)
+        s, sx, sy = weights(shape, body.points()[0], body.half_length, lines, cell, walls)
         share.append(body.volume @ s / cell**2)
         slope.append(-np.stack([body.volume @ sx, body.volume @ sy], axis=1) / cell)
     return np.array(share), np.array(slope)

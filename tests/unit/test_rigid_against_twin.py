@@ -127,6 +127,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "flip": ({"blend": ("alpha", 0.0)}, "base"),
     "pic": ({"blend": ("alpha", 1.0)}, "base"),
     "linear": ({"shape": "linear"}, "base"),
+    "quadratic_bspline": ({"shape": "quadratic_bspline"}, "linear"),
     "linear_flip": ({"shape": "linear", "blend": ("alpha", 0.0)}, "linear"),
     "own_half_lengths": (
         {
@@ -267,7 +268,7 @@ def expected(name: str) -> State:
     plain = twin_of(scene_of(name))
     nearest, met = np.inf, 0
     for _ in range(BASE["steps"]):
-        share, _ = shares(plain.bodies, plain.shape, plain.lines, plain.cell)
+        share, _ = shares(plain.bodies, plain.shape, plain.lines, plain.cell, plain.walls)
         nearest = min(nearest, distance_to_a_tie(share))
         met += len(list(stone_contacts(plain.bodies, plain.cell, 1.0)))
         plain.advance(1)

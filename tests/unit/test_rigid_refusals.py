@@ -37,6 +37,20 @@ def test_refused_in_single_precision() -> None:
     assert_refused(lambda: patch(0, 1, [SOIL, ROCK], precision="single"), *parts)
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("scheme", "usl", "usf"),
+        ("scheme", "musl", "usf"),
+        ("transfer", "apic", "flip"),
+        ("transfer", "xpic", "flip"),
+    ],
+)
+def test_members_of_the_family_that_are_refused(name: str, value: str, allowed: str) -> None:
+    parts = (name, value, f"{allowed} with rigid stones")
+    assert_refused(lambda: patch(0, 1, [SOIL, ROCK], **{name: value}), *parts)
+
+
 def test_refused_outside_a_stone() -> None:
     parts = ("stone", "-1", "the number of a stone where the material is rigid")
     assert_refused(lambda: patch(-1, 1, [SOIL, ROCK]), *parts)
