@@ -243,6 +243,10 @@ def test_a_plan_beyond_its_budget_says_what_it_would_need(small: gs.Scene) -> No
     assert not plan.holds and plan.levels == 0
     assert "cannot promise 0.05" in str(plan)
     assert any("needs a cell" in reason and "budget" in reason for reason in plan.reasons)
+    folder = plan._directory
+    assert folder.is_dir()
+    del plan
+    assert not folder.exists()  # the pilots' files go with the plan
 
 
 def test_stones_that_share_nodes_are_not_promised() -> None:
