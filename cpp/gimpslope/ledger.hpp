@@ -28,8 +28,8 @@
 //   integration  V w(ds) + dt (internal force + m g) . dv / 2
 //                - (V s - (V s-)) : (strain increment)
 //
-// With PIC and XPIC the points around a node at a wall keep the motion that they have off the wall,
-// so that their mean v- never comes to rest: impact takes it at every step, transfer gives it back.
+// With XPIC the points change by v+ - v' and keep what walls hold of v-: m (v-^2 - v'^2) / 2 goes to
+// transfer, where it comes back from, and not to friction or impact.
 #pragma once
 
 #include "instruction_set.hpp"

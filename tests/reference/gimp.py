@@ -304,6 +304,7 @@ class Reference:
             damping=damping,
             held=np.any(held, axis=0) if held else np.zeros(len(mass), bool),
             stress_first=self.scheme == "usf",
+            points_keep=self.transfer == "xpic" and self.order > 1,
         )
 
         self.ledger.transfer += self._kinetic_energy_of_soil()

@@ -75,15 +75,21 @@ def nodes(
     damping: Array,
     held: NDArray[np.bool_],
     stress_first: bool,
+    points_keep: bool,
 ) -> None:
     """Nodes go from the raw velocity to the one that walls allow, and by the forces to `after`;
     those that rigid stones hold, by these. Points are strained by the velocity that the walls
-    allow or, where not `stress_first`, afterwards."""
+    allow or, where not `stress_first`, afterwards. What the walls hold of the raw velocity is no
+    loss to them where `points_keep` it."""
     m = mass[:, None]
     middle = (before + after) / 2
     impulse = m * (after - before) - dt * (internal + weight + body + damping)
+    held_back = m * (raw**2 - before**2) / 2
+    if points_keep:
+        ledger.transfer += float(held_back.sum())
+        held_back = np.zeros_like(held_back)
     for taken, stopped in (
-        (m * (raw**2 - before**2) / 2, before == 0),
+        (held_back, before == 0),
         (-impulse * middle, (before == 0) | (after == 0)),
     ):
         rubbed = _rubbed(stopped, places, walls, cell)

@@ -75,9 +75,14 @@ inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
         const Pair v = within_walls(g, column, row, node, raw);
         if (ledger != nullptr) {
           const double half_mass = 0.5 * g.momentum[4 * node];
-          for (int c = 0; c < 2; ++c)
-            add_wall(g, column, row, c, v[c] == 0.0, half_mass * (raw[c] - v[c]) * (raw[c] + v[c]),
-                     *ledger);
+          for (int c = 0; c < 2; ++c) {
+            const double taken = half_mass * (raw[c] - v[c]) * (raw[c] + v[c]);
+            if (g.terms != nullptr) {
+              ledger->transfer += taken;
+            } else {
+              add_wall(g, column, row, c, v[c] == 0.0, taken, *ledger);
+            }
+          }
         }
         set(node, v);
       });
