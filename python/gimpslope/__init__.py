@@ -18,6 +18,7 @@ from . import kernel, stones
 from .ledger import Ledger
 from .materials import DruckerPrager, Elastic, Material, Rigid
 from .method import Method
+from .method_warning import MethodWarning
 from .outline import Outline
 from .recording import Recording
 from .run import Run, open
@@ -45,6 +46,7 @@ __all__ = [
     "Ledger",
     "Material",
     "Method",
+    "MethodWarning",
     "NotSettledError",
     "Outline",
     "Points",

@@ -166,16 +166,3 @@ class Method(Record):
             shown = ", ".join(f"{name}={value}" for name, value in given)
             raise ValueError(f"at most one of {', '.join(names)} must be given, got {shown}")
         return given[0] if given else None
-
-
-def viscosity_of(alpha: float, cell: float, half_length: float, time_step: float) -> float:
-    """The kinematic viscosity, m2/s, as which a share `alpha` of PIC in each step acts: alpha times
-    the second moment of the shape function h2 (1/6 + l2 / (3 h2)) over the step.
-
-    Parameters
-    ----------
-    alpha : in [0, 1]
-    cell, half_length : h, and l of the points' domains, 0 with shape "linear", m
-    time_step : s, > 0
-    """
-    return alpha * (cell**2 / 6 + half_length**2 / 3) / time_step

@@ -44,8 +44,8 @@ def blocks(surveyed: Sequence[Surveyed], *, full: bool) -> list[page.Block]:
         page.Heading(_TITLE, level=1),
         page.Paragraph(
             f"gimpslope {version('gimpslope')}, `{command}`. {_verdict(surveyed)} A row *fails* "
-            "says that what is known to fail does, where theory has it; a row *stands* that another "
-            "method does not, the default unless it says otherwise."
+            "says that what is known to fail does, where theory has it; a row *stands* that "
+            "another method does not: the default, unless it says otherwise."
         ),
     ]
     for one in surveyed:
