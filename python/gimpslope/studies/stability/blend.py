@@ -123,6 +123,8 @@ def draw(by_share: dict[float, Slide], by_viscosity: dict[float, Slide]) -> Figu
     for label, found in ((f"alpha = {ALPHA:g} a step", by_share), ("viscosity", by_viscosity)):
         ax.semilogx(list(found), [of.run_out for of in found.values()], "o-", label=label)
     ax.set(xlabel="Courant number", ylabel=f"run-out after {DURATION:g} s (m)", ylim=(0, None))
+    ax.set_xticks(list(by_share), [f"{courant:g}" for courant in by_share])
+    ax.minorticks_off()
     ax.legend()
     return figure
 

@@ -131,7 +131,7 @@ def draw(drifts: dict[str, Drift], steps: int) -> Figure:
         ax.plot(way, factor(scheme) ** (2 * way), "k-", linewidth=0.8)
     ax.plot([], [], "k-", linewidth=0.8, label="eigenvalues of USF, USL, MUSL")
     ax.set(xlabel="steps", ylabel="energy / first", ylim=(0, 1.1))
-    ax.legend(loc="center right")
+    ax.legend(loc="lower left")
     return figure
 
 

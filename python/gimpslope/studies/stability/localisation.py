@@ -109,7 +109,7 @@ def draw(slides: dict[float, Slide]) -> Figure:
     }
     for name, label in names.items():
         values = [getattr(of, name) / getattr(first, name) for of in slides.values()]
-        ax.loglog(list(slides), values, "o-", label=label)
+        ax.semilogx(list(slides), values, "o-", label=label)
     ax.set(xlabel="cell (m)", ylabel="of that on the coarsest grid")
     ax.set_xticks(list(slides), [f"{cell:g}" for cell in slides])
     ax.minorticks_off()
