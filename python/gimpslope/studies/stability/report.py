@@ -8,8 +8,10 @@ from dataclasses import asdict
 from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
+from ...kernel import shapes
+from ...method import Scheme
 from .. import plain_data
 from ..verify.problem import Check
 from . import Surveyed, page
@@ -45,7 +47,8 @@ def blocks(surveyed: Sequence[Surveyed], *, full: bool) -> list[page.Block]:
         page.Paragraph(
             f"gimpslope {version('gimpslope')}, `{command}`. {_verdict(surveyed)} A row *fails* "
             "says that what is known to fail does, where theory has it; a row *stands* that "
-            "another method does not: the default, unless it says otherwise."
+            "another method does not: the default, unless it says otherwise. This build has the "
+            f"shape functions {', '.join(shapes())} and the schemes {', '.join(get_args(Scheme))}."
         ),
     ]
     for one in surveyed:
@@ -127,6 +130,9 @@ def _expected(check: Check) -> str:
         return f"≤ {_number(check.high)}"
     if not math.isfinite(check.high):
         return f"≥ {_number(check.low)}"
+    below, above = check.expected - check.low, check.high - check.expected
+    if math.isclose(below, above, rel_tol=1e-3):
+        return f"{_number(check.expected)} ± {above:.2g}"
     return f"{_number(check.expected)}, in {_number(check.low)} to {_number(check.high)}"
 
 
