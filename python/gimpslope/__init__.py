@@ -18,6 +18,7 @@ from . import kernel, stones
 from .ledger import Ledger
 from .materials import DruckerPrager, Elastic, Material, Rigid
 from .method import Method
+from .method_warning import MethodWarning
 from .outline import Outline
 from .planning import Answer, Plan, plan
 from .recording import Recording
@@ -47,6 +48,7 @@ __all__ = [
     "Ledger",
     "Material",
     "Method",
+    "MethodWarning",
     "NotSettledError",
     "Outline",
     "Plan",

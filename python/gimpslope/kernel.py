@@ -12,6 +12,8 @@ from ._check import FloatArray
 from .materials import DruckerPrager, Material
 from .method import GIMP, Shape
 
+_PLACES = 256  # of a point in a cell
+
 
 class ShapeFunctions(NamedTuple):
     """Shape functions of n points at the k nodes each of them reaches.
@@ -70,6 +72,23 @@ def shape_functions(
     at = _check.array("origin", origin, (2,)).tolist()
     side = _check.positive("cell", cell)
     return ShapeFunctions(*_core.shape_functions(shape, points, halves, side, (at[0], at[1])))
+
+
+def second_moment(shape: Shape, half_length: float, *, cell: float) -> float:
+    """Mean, over the places of a point in a cell, of the second moment of its shape functions about
+    it, m2: h2/6 for hats, h2/6 + l2/3 for domains of half-length l. A share alpha of PIC in each
+    step of length dt acts as the viscosity alpha times it over dt.
+
+    Parameters
+    ----------
+    shape : one of `shapes()`
+    half_length : of the domain of a point that has one, m
+    cell : side of a grid cell, m
+    """
+    place = cell * np.column_stack([(np.arange(_PLACES) + 0.5) / _PLACES, np.full(_PLACES, 0.5)])
+    nodes, values, _ = shape_functions(shape, place, np.full_like(place, half_length), cell=cell)
+    apart = nodes[..., 0] * cell - place[:, :1]
+    return float((values * apart**2).sum(axis=1).mean())
 
 
 def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> NewStress:

@@ -160,6 +160,15 @@ class DruckerPrager(Deformable):
         return self.to_core().cone_coefficients
 
     @property
+    def plane_strain_friction(self) -> float | None:
+        """Friction angle phi_e that the cone has at collapse in plane strain, degrees:
+        sin phi_e = eta sqrt(1 - etabar^2 / 3) / (1 - eta etabar / 3), after de Souza Neto, Peric &
+        Owen 2008, section 6.4.4. None where the cone has no collapse in plane strain."""
+        eta, _, etabar = self.cone_coefficients
+        sine = eta * math.sqrt(1 - etabar**2 / 3) / (1 - eta * etabar / 3)
+        return math.degrees(math.asin(sine)) if sine < 1 else None
+
+    @property
     def tension_limit(self) -> float:
         """Largest mean stress, Pa: the cut-off, or the apex c / tan(phi)."""
         return self.to_core().tension_limit

@@ -10,6 +10,7 @@ from os import PathLike
 from . import _check
 from .materials import Deformable
 from .method import Method
+from .method_warning import warn_at_end, warn_at_start
 from .recorder import Recorder
 from .recording import Recording
 from .rest import Rest
@@ -63,6 +64,8 @@ def simulate(
     Diverged
         If the motion is no longer finite or outruns the grid.
 
+    Warns (`MethodWarning`) of a run that enters a region where its method is known to fail.
+
     After any error, Ctrl-C included, the file holds what was computed and says how it ended. A run
     that diverged ends with its last row and snapshot, for the state after them is torn.
     """
@@ -88,12 +91,15 @@ class Simulation:
         self.solver = Solver.of(setup.scene, setup.method, elastic=True)
 
     def run(self, recorder: Recorder) -> Run:
-        """All stages, one after the other, recorded."""
+        """All stages, one after the other, recorded; with a `MethodWarning` where the method is
+        known to fail."""
+        warn_at_start(self.setup, self.solver)
         with recorder:
             self.load(recorder)
             self.settle(recorder)
             self.release(recorder)
             self.slide(recorder)
+        warn_at_end(self.setup, self.solver)
         return Run(recorder.path)
 
     def load(self, recorder: Recorder) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -444,3 +445,13 @@ def test_installed_command() -> None:
     assert shown.returncode == 0 and shown.stdout.strip() == f"gimpslope {gs.__version__}"
     shown = subprocess.run([command], capture_output=True, text=True, timeout=30)
     assert shown.returncode == 2 and "COMMAND" in shown.stderr
+
+
+def test_warnings_are_lines_of_the_command(
+    undrawn: list[Any], capsys: pytest.CaptureFixture[str]
+) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("default")
+        assert cli.main([*COARSE, "--reading", "literal"]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert sum(line.startswith("gimpslope: cones: ") for line in lines) == 1

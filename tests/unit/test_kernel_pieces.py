@@ -62,3 +62,13 @@ def test_return_mapping_refuses() -> None:
         gs.kernel.return_mapping(SOIL.elastic(), np.zeros((1, 4)))  # type: ignore[arg-type]
     with pytest.raises(ValueError, match=r"stress must be .*\(n, 4\)"):
         gs.kernel.return_mapping(SOIL, np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize(
+    ("shape", "half_length", "expected"),
+    [("linear", 0.0, 1 / 6), ("ugimp", 0.25, 1 / 6 + 1 / 48), ("ugimp", 0.5, 1 / 4)],
+)
+def test_second_moment(shape: str, half_length: float, expected: float) -> None:
+    """That of a hat and of the box it is averaged over add up: h^2 / 6 + l^2 / 3."""
+    moment = gs.kernel.second_moment(shape, half_length * 0.2, cell=0.2)
+    assert moment == pytest.approx(expected * 0.2**2, rel=1e-4)

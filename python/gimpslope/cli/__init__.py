@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import argparse
 import sys
+import warnings
 from collections.abc import Callable, Sequence
+from typing import TextIO
 
 import gimpslope as gs
 
 from ..studies.parallel import RunFailed
-from . import bench, converge, export, info, plan, reproduce, run, verify
+from . import bench, converge, export, info, plan, reproduce, run, stability, verify
 
-_COMMANDS = (run, plan, reproduce, export, verify, converge, bench, info)
+_COMMANDS = (run, plan, reproduce, export, verify, converge, stability, bench, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -27,13 +29,27 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         return 130
     try:
-        return command()
+        with warnings.catch_warnings():
+            warnings.showwarning = _show
+            return command()
     except (gs.Diverged, gs.NotSettledError, RunFailed, OSError) as failed:
         print(f"gimpslope: {failed}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("gimpslope: interrupted", file=sys.stderr)
         return 130
+
+
+def _show(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """A warning as a line of the command's own, without the place in the code."""
+    print(f"gimpslope: {message}", file=sys.stderr)
 
 
 def _parser() -> argparse.ArgumentParser:
