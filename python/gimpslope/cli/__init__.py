@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 import gimpslope as gs
 
 from ..studies.parallel import RunFailed
-from . import bench, converge, export, info, reproduce, run, verify
+from . import bench, converge, export, info, reproduce, run, tradeoff, verify
 
-_COMMANDS = (run, reproduce, export, verify, converge, bench, info)
+_COMMANDS = (run, reproduce, export, verify, converge, tradeoff, bench, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
