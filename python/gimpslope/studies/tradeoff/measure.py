@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import signal
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
@@ -92,8 +93,10 @@ def _run_all(tasks: Sequence[Task], jobs: int) -> Iterator[Row]:
     if jobs == 1 or len(tasks) < 2:
         yield from map(run, tasks)
         return
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(jobs, mp_context=context) as pool:
+    ignore_interrupts = (signal.SIGINT, signal.SIG_IGN)  # the runs that go end, and are kept
+    with ProcessPoolExecutor(
+        jobs, multiprocessing.get_context("spawn"), signal.signal, ignore_interrupts
+    ) as pool:
         yield from pool.map(run, tasks)
 
 

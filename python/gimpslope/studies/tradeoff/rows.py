@@ -43,9 +43,11 @@ class Row:
 
 
 def append(folder: Path, row: Row) -> None:
-    """Write a run down at once."""
-    with (folder / NAME).open("a") as file:
-        file.write(row.to_line())
+    """Write a run down at once, on a line of its own."""
+    path = folder / NAME
+    cut_off = path.exists() and not path.read_bytes().endswith(b"\n")
+    with path.open("a") as file:
+        file.write("\n" * cut_off + row.to_line())
 
 
 def read(folder: Path, cases: Sequence[Case]) -> list[Row]:
@@ -61,10 +63,10 @@ def read(folder: Path, cases: Sequence[Case]) -> list[Row]:
 
 
 def _lines(path: Path) -> Iterator[dict[str, Any]]:
-    """A last line that was cut off is left out."""
+    """A line that was cut off, where a sweep was killed, is left out."""
     if path.exists():
-        for line in path.read_text().splitlines(keepends=True):
-            if line.endswith("}\n"):
+        for line in path.read_text().splitlines():
+            if line.endswith("}"):
                 yield json.loads(line)
 
 

@@ -79,6 +79,11 @@ def off(figures: Figures, known: Figures) -> float:
     return math.sqrt(sum(error**2 for error in errors) / len(known))
 
 
+def known_to(limit: Figures, uncertainty: Figures) -> float:
+    """Uncertainty of limits, told as `off` tells errors."""
+    return off(Figures(*map(sum, zip(limit, uncertainty, strict=True))), limit)
+
+
 def _slide(setup: Setup, *, vertical: bool) -> Slid:
     simulation, watch = Simulation(setup), Stopwatch()
     with TemporaryDirectory() as folder:
