@@ -145,19 +145,36 @@ def test_page_tells_what_to_choose() -> None:
         "* **10 %**: uGIMP, C = 0.8, h = 2 m: 5 % in 1 s (0.9 to 1.1); the default needs h = 1 m "
         "and 8 times as long." in text
     )
-    assert "* **2 %**: uGIMP, C = 0.8, h = 1 m: 1.5 % in 4 s (3.6 to 4.4); the default" in text
+    assert "**2 %**: uGIMP, C = 0.8, h = 1 m: 1.5 % in 4 s (3.6 to 4.4), finest; the def" in text
     assert "* **0.5 %**: no case reaches it; the nearest is uGIMP, C = 0.8, h = 1 m: 1.5 %" in text
     assert (
         "* **10 %**: uGIMP, C = 0.8 reaches it in 1 of the 1 problems in which any method does, "
-        "there at 1 times the cost of the cheapest (geometric mean); uGIMP (default) reaches it "
-        "in 1 of the 1 problems in which any method does, there at 8 times" in text
+        "at 1 times the cost of the cheapest there; uGIMP (default) reaches it in 1 of the 1 "
+        "problems in which any method does, at 8 times" in text
     )
-    assert "uGIMP (default) reaches it in none" in text
+    assert (
+        "uGIMP (default) reaches it in 0 of the 1 problems in which any method does. It can be "
+        "told of 1 of 1 problems." in text
+    )
+
+
+def test_page_tells_what_each_choice_does_alone() -> None:
+    found = [made(0.1, 2.0, cell=2.0), made(0.03, 8.0)]
+    found += [made(0.2, 1.0, cell=2.0, courant=0.8), made(0.03, 4.0, courant=0.8)]
+    found += [made(0.01, 4.0, cell=2.0, precision="single"), made(math.inf, 1.0, shape="linear")]
+    lines = page(found, known_to=0.05).splitlines()
+    assert "| uGIMP, C = 0.8 | 0.50 | 1.41 |" in lines, "0.03 counts as 0.05: (2 * 1)^(1/2)"
+    assert "| uGIMP, single precision | 2.00 | 0.50 |" in lines
+    assert "| linear MPM | - | fails |" in lines
+    assert "| uGIMP, C = 0.2 | - | - |" in lines
 
 
 def test_page_claims_nothing_below_what_is_known() -> None:
     text = page([made(0.001, 1.0)], known_to=0.03)
-    assert "* **10 %**: uGIMP (default), h = 1 m: 0.1 % in 1 s (0.9 to 1.1), the default." in text
+    assert (
+        "* **10 %**: uGIMP (default), h = 1 m: 0.1 % in 1 s (0.9 to 1.1), finest, the default."
+        in text
+    )
     assert "* **2 %**: cannot be told, for the answer is known to 3 %." in text
 
 

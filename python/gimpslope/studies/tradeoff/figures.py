@@ -17,7 +17,7 @@ from . import words
 from .measure import Measured
 from .pareto import front, held
 from .problem import Problem
-from .summary import ByProblem
+from .ranking import ByProblem
 
 _TOP = 300.0  # %, errors above it are no results
 _COLUMNS = 4

@@ -11,6 +11,7 @@ from . import figures, summary, words
 from .measure import Measured, measured
 from .pareto import front, held
 from .plan import Plan
+from .ranking import of_each
 
 _DPI = 90
 _COLUMNS = (
@@ -24,7 +25,7 @@ def write(plan: Plan, folder: Path) -> str:
     found = measured(plan, folder)
     page = summary.markdown(plan, found)
     (folder / "summary.md").write_text(page)
-    by_problem = summary.of_each(plan, found)
+    by_problem = of_each(plan, found)
     for problem, some in by_problem:
         _table(folder / f"{problem.name}.csv", some)
         figures.chart(problem, some).savefig(folder / f"{problem.name}.png", dpi=_DPI)

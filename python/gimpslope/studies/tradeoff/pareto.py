@@ -16,6 +16,11 @@ def held(measured: Sequence[Measured]) -> dict[Measured, float]:
     return {one: max(other.error for other in measured if _refines(other, one)) for one in measured}
 
 
+def is_finest(one: Measured, measured: Sequence[Measured]) -> bool:
+    """Whether no finer grid was measured with the same changes, so that its error is on trust."""
+    return not any(_refines(other, one) for other in measured if other != one)
+
+
 def front(measured: Sequence[Measured]) -> list[Measured]:
     """The cases that no cheaper one comes near, by errors that hold; cheapest first."""
     errors, best, found = held(measured), float("inf"), []

@@ -22,6 +22,10 @@ ROUNDS, QUICK_ROUNDS = 3, 2
 """How often each case is run."""
 
 
+Changed = tuple[tuple[str, Any], ...]
+"""Changes of a method that can be compared."""
+
+
 @dataclass(frozen=True)
 class Case:
     """A problem on one grid with one method.
@@ -36,7 +40,7 @@ class Case:
 
     problem: str
     cell: float
-    changes: tuple[tuple[str, Any], ...] = ()
+    changes: Changed = ()
     model: str | None = None
 
     @property
