@@ -124,7 +124,7 @@ def test_errors_that_a_finer_grid_takes_back_do_not_hold() -> None:
 
 
 def test_front_and_cheapest() -> None:
-    cheap, better, near = made(0.2, 1.0, alpha=0.1), made(0.05, 2.0, alpha=0.2), made(0.049, 3.0)
+    cheap, better, near = made(0.2, 1.0, alpha=0.1), made(0.05, 2.0, alpha=0.2), made(0.046, 3.0)
     dear, failed = made(0.01, 9.0, alpha=0.3), made(math.inf, math.nan, alpha=0.4)
     worse = made(0.06, 4.0, alpha=0.5)
     every = [failed, dear, near, worse, better, cheap]

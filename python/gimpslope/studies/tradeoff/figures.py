@@ -17,6 +17,7 @@ from . import words
 from .measure import Measured
 from .pareto import front, held
 from .problem import Problem
+from .problems import PROBLEMS
 from .ranking import ByProblem
 
 _TOP = 300.0  # %, errors above it are no results
@@ -26,8 +27,8 @@ _SHADES = ("C4", "C0", "C2", "C1", "C6", "C5", "C8", "C9")
 
 
 def chart(problem: Problem, measured: Sequence[Measured]) -> Figure:
-    """All cases of a problem: colour by shape function, marker by grid; the front with its numbers,
-    told beside it; the default as a line of stars."""
+    """All cases of a problem: colour by shape function, or by model where there are stones, marker
+    by grid; the front with its numbers, told beside it; the default as a line of stars."""
     figure = Figure(figsize=(11.0, 6.0), layout="constrained")
     ax, beside = figure.subplots(1, 2, width_ratios=(1.25, 1))
     shown = [one for one in measured if math.isfinite(one.error)]
@@ -171,13 +172,18 @@ def _legend(problem: Problem, shown: Sequence[Measured]) -> list[Line2D]:
         Line2D([], [], color="0.4", marker=marker, linestyle="", ms=5, label=f"h = {cell:.3g} m")
         for cell, marker in zip(_cells(shown), MARKERS, strict=False)
     ]
-    return [*_shape_handles(), *grids, *_line_handles()]
+    coloured = _handles(problem.models) if len(problem.models) > 1 else _shape_handles()
+    return [*coloured, *grids, *_line_handles()]
 
 
 def _shape_handles() -> list[Line2D]:
+    return _handles([words.shape(name) for name in kernel.shapes()])
+
+
+def _handles(labels: Sequence[str | None]) -> list[Line2D]:
     return [
-        Line2D([], [], color=colour, marker="o", linestyle="", ms=5, label=words.shape(name))
-        for name, colour in zip(kernel.shapes(), _SHADES, strict=False)
+        Line2D([], [], color=colour, marker="o", linestyle="", ms=5, label=label)
+        for label, colour in zip(labels, _SHADES, strict=False)
     ]
 
 
@@ -194,8 +200,10 @@ def _line_handles() -> list[Line2D]:
 
 
 def _colour(one: Measured) -> str:
-    names = kernel.shapes()
-    return _SHADES[names.index(one.case.method.shape) % len(_SHADES)]
+    models = PROBLEMS[one.case.problem].models
+    names: Sequence[str | None] = models if len(models) > 1 else kernel.shapes()
+    own = one.case.model if len(models) > 1 else one.case.method.shape
+    return _SHADES[names.index(own) % len(_SHADES)]
 
 
 def _cells(shown: Sequence[Measured]) -> list[float]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from .measure import Measured
 
-LEAST = 0.05
+LEAST = 0.1
 """Share by which an error must be smaller to be worth a higher cost."""
 
 
