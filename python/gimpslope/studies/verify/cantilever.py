@@ -14,6 +14,7 @@ it does: the gaps are the smaller the more points share a cell.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from importlib import resources
 from typing import NamedTuple
 
@@ -22,7 +23,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ...method import Shape
+from ..stopwatch import Stopwatch
 from .problem import Check, FloatArray, Outcome, Problem
 
 LENGTH, HEIGHT, GRAVITY = 4.0, 1.0, 10.0  # m, m, m/s2
@@ -30,14 +31,16 @@ BEAM = gs.Elastic(density=1050.0, young=1e6, poisson=0.3)
 CLAMP = gs.Elastic(density=1050.0, young=1e8, poisson=0.3)
 DURATION = 3.0  # s
 DEPTH, SHARE = 3.28, 0.05  # of the finite elements, m; tolerance
+FLIP = gs.Method(alpha=0.0)
 LAW = "other law of large strains, coarse root"
 
 
 class Swing(NamedTuple):
-    """Times (s) and displacement (m) of the lower corner of the free end."""
+    """Times (s) and displacement (m) of the lower corner of the free end, and cost."""
 
     time: FloatArray
     fall: FloatArray
+    core_seconds: float = np.nan
 
     @property
     def lowest(self) -> float:
@@ -49,6 +52,11 @@ class Swing(NamedTuple):
         """On the way back, m."""
         return float(self.fall[self.time > 2].max())
 
+    def off(self, other: Swing) -> float:
+        """Root of the mean square distance from another at its times, m."""
+        miss = np.interp(other.time, self.time, self.fall) - other.fall
+        return float(np.sqrt(np.square(miss).mean()))
+
     @property
     def turning(self) -> float:
         """Time of the highest place, s."""
@@ -58,8 +66,8 @@ class Swing(NamedTuple):
 def run(full: bool) -> Outcome:
     """Few and many points a cell, and linear shape functions."""
     others = {name: published(name) for name in ("fem", "ugimp", "cpdi")}
-    few, linear = swing(3, 0.25), swing(3, 0.25, "linear")
-    many = {cell: swing(6, cell) for cell in ((0.25, 0.125) if full else (0.25,))}
+    few, linear = swing(3, 0.25, FLIP), swing(3, 0.25, replace(FLIP, shape="linear"))
+    many = {cell: swing(6, cell, FLIP) for cell in ((0.25, 0.125) if full else (0.25,))}
     checks = [
         Check.near(
             f"lowest place of the tip, 3 x 3 points, against {name}, m",
@@ -119,7 +127,7 @@ def run(full: bool) -> Outcome:
     return Outcome(checks, draw(others, few, many[0.25], linear))
 
 
-def swing(points: int, cell: float, shape: Shape = "ugimp") -> Swing:
+def swing(points: int, cell: float, method: gs.Method) -> Swing:
     """The beam with points x points in a cell."""
     beam = np.array([(-HEIGHT, 0), (LENGTH, 0), (LENGTH, HEIGHT), (-HEIGHT, HEIGHT)])
     clamp = gs.Outline(beam.clip(None, (0, HEIGHT)))
@@ -134,15 +142,16 @@ def swing(points: int, cell: float, shape: Shape = "ugimp") -> Swing:
         walls=walls,
         gravity=GRAVITY,
     )
-    solver = gs.Solver.of(scene, gs.Method(shape=shape, alpha=0.0))
+    solver, watch = gs.Solver.of(scene, method), Stopwatch()
     x, y = scene.points.position.T
     corner = int(np.argmax(x - y))
     time = np.linspace(0, DURATION, 151)
     fall = np.empty_like(time)
     for row, end in enumerate(time):
-        solver.advance_to(end)
+        with watch:
+            solver.advance_to(end)
         fall[row] = solver.position[corner, 1] - y[corner]
-    return Swing(time, fall)
+    return Swing(time, fall, watch.core_seconds)
 
 
 def published(name: str) -> Swing:
@@ -158,10 +167,10 @@ def draw(others: dict[str, Swing], few: Swing, many: Swing, linear: Swing) -> Fi
     styles = ("ko", "C7^", "C7x")
     names = ("finite elements", "uGIMP, published", "CPDI, published")
     for style, name, other in zip(styles, names, others.values(), strict=True):
-        ax.plot(*other, style, markersize=3.5, markerfacecolor="none", label=name)
-    ax.plot(*many, "C0", label="uGIMP, 6 x 6 points a cell")
-    ax.plot(*few, "C1", label="uGIMP, 3 x 3 points a cell")
-    ax.plot(*linear, "C3", linewidth=1, label="linear MPM, 3 x 3 points a cell")
+        ax.plot(other.time, other.fall, style, markersize=3.5, markerfacecolor="none", label=name)
+    ax.plot(many.time, many.fall, "C0", label="uGIMP, 6 x 6 points a cell")
+    ax.plot(few.time, few.fall, "C1", label="uGIMP, 3 x 3 points a cell")
+    ax.plot(linear.time, linear.fall, "C3", linewidth=1, label="linear MPM, 3 x 3 points a cell")
     ax.set(xlabel="time (s)", ylabel="displacement of the tip (m)", xlim=(0, DURATION))
     figure.legend(loc="outside lower center", ncols=2)
     return figure

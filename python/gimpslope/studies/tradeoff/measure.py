@@ -1,0 +1,112 @@
+"""The sweep: round after round through all cases, so that whatever else the machine does falls on
+all of them alike; each run is written down as soon as it is made."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import signal
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ...simulation import NotSettledError
+from ...solver import Diverged
+from . import rows
+from .plan import Case, Plan
+from .problems import PROBLEMS
+from .rows import Row
+
+
+class Task(NamedTuple):
+    """A case in one of the rounds, from 1."""
+
+    case: Case
+    round: int
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A case over all rounds.
+
+    Attributes
+    ----------
+    case : what was run
+    error : a part of what is known; infinite where the run failed
+    core_seconds, fastest, slowest : median and range over the rounds; NaN where the run failed
+    rounds : how many
+    failure : why it failed, in words
+    """
+
+    case: Case
+    error: float
+    core_seconds: float
+    fastest: float
+    slowest: float
+    rounds: int
+    failure: str
+
+
+def sweep(plan: Plan, folder: Path, *, jobs: int = 1) -> Iterator[Row]:
+    """Make the runs that are not there yet, at most `jobs` at a time, and write each to the folder.
+
+    A run that fails is not repeated. A script that calls this with more than one job needs
+    `if __name__ == "__main__":`, for the processes import it.
+    """
+    for number in range(1, plan.rounds + 1):
+        for row in _run_all(_waiting(plan, folder, number), jobs):
+            rows.append(folder, row)
+            yield row
+
+
+def missing(plan: Plan, folder: Path) -> int:
+    """Runs that are not there yet, at most: those that fail are not repeated."""
+    return sum(len(_waiting(plan, folder, number)) for number in range(1, plan.rounds + 1))
+
+
+def measured(plan: Plan, folder: Path) -> list[Measured]:
+    """What is there of each case, in the order of the plan."""
+    by_case: dict[Case, list[Row]] = defaultdict(list)
+    for row in rows.read(folder, plan.cases):
+        by_case[row.case].append(row)
+    return [_over_rounds(case, by_case[case]) for case in plan.cases if case in by_case]
+
+
+def _waiting(plan: Plan, folder: Path, number: int) -> list[Task]:
+    there = rows.read(folder, plan.cases)
+    done = {row.case for row in there if row.round == number or row.failure}
+    return [Task(case, number) for case in plan.cases if case not in done]
+
+
+def _over_rounds(case: Case, some: list[Row]) -> Measured:
+    seconds = [row.core_seconds for row in some]
+    low, median, high = np.quantile(seconds, (0, 0.5, 1)).tolist()
+    return Measured(case, some[0].error, median, low, high, len(some), some[0].failure)
+
+
+def _run_all(tasks: Sequence[Task], jobs: int) -> Iterator[Row]:
+    if jobs == 1 or len(tasks) < 2:
+        yield from map(run, tasks)
+        return
+    ignore_interrupts = (signal.SIGINT, signal.SIG_IGN)  # the runs that go end, and are kept
+    with ProcessPoolExecutor(
+        jobs, multiprocessing.get_context("spawn"), signal.signal, ignore_interrupts
+    ) as pool:
+        yield from pool.map(run, tasks)
+
+
+def run(task: Task) -> Row:
+    """One run; a motion that fails has an infinite error."""
+    case, number = task
+    try:
+        solution = PROBLEMS[case.problem].solve(case.cell, case.method, case.model)
+    except (Diverged, NotSettledError) as failed:
+        return Row(case, number, math.inf, math.nan, str(failed))
+    if not math.isfinite(solution.error):
+        return Row(case, number, math.inf, math.nan, "the motion is not finite")
+    return Row(case, number, *solution)

@@ -1,0 +1,137 @@
+"""The problems: set-ups and errors are those of `verify`, slopes those of `slopes`."""
+
+from __future__ import annotations
+
+from ...method import Method
+from .. import reference
+from ..verify import aluminium_bars, bar, cantilever, column, manufactured
+from . import slopes
+from .problem import Changes, Problem, Solution
+
+AMPLITUDE = 0.1
+"""Of the manufactured solution, m: strains of 31 %."""
+
+SLOPE_A = slopes.Figures(164.4e3, 1.549, 5.348)
+UNCERTAINTY_A = slopes.Figures(2.4e3, 0.036, 0.034)
+"""Limits on finer grids and their uncertainties (`gimpslope converge`, to a cell of 0.05 m)."""
+
+WITH_STONE = slopes.Figures(5850.0, 0.916, 1.608)
+UNCERTAINTY_WITH_STONE = slopes.Figures(257.0, 0.072, 0.028)
+"""The same of the small slope with a stone: of the limits that agree with those of the full model,
+stones of 20 GPa, the surest (`pytest -m slow tests/unit/test_tradeoff_reference.py`)."""
+
+
+def _column(cell: float, method: Method, _: str | None) -> Solution:
+    rest = column.press(column.SOFT, round(column.SOFT.height / cell), method)
+    return Solution(rest.error, rest.core_seconds)
+
+
+def _bar(cell: float, method: Method, _: str | None) -> Solution:
+    swing = bar.swing(round(bar.LENGTH / cell), method)
+    return Solution(swing.error, swing.core_seconds)
+
+
+def _manufactured(cell: float, method: Method, _: str | None) -> Solution:
+    swing = manufactured.swing(round(1 / cell), AMPLITUDE, method)
+    return Solution(swing.error / AMPLITUDE, swing.core_seconds)
+
+
+def _cantilever(cell: float, method: Method, _: str | None) -> Solution:
+    swing = cantilever.swing(3, cell, method)
+    return Solution(swing.off(cantilever.published("fem")) / cantilever.DEPTH, swing.core_seconds)
+
+
+def _aluminium_bars(cell: float, method: Method, _: str | None) -> Solution:
+    heap = aluminium_bars.collapse(cell, method)
+    off = aluminium_bars.distance(heap, aluminium_bars.measured("surface"))
+    return Solution(off / aluminium_bars.HEIGHT, heap.core_seconds)
+
+
+def _slope_a(cell: float, method: Method, _: str | None) -> Solution:
+    slid = slopes.slope_a(cell, method)
+    return Solution(slopes.off(slid.figures, SLOPE_A), slid.core_seconds)
+
+
+def _with_stone(cell: float, method: Method, model: str | None) -> Solution:
+    slid = slopes.with_stone(cell, method, model or reference.STONE_MODELS[0])
+    return Solution(slopes.off(slid.figures, WITH_STONE), slid.core_seconds)
+
+
+_LONGER: Changes = {"courant": 0.8}
+_CURED: Changes = {"volumetric_strain": "cell_average"}
+_CONVECTED: Changes = {"shape": "cpgimp", "domain_update": "stretch"}
+
+_ALL = (
+    Problem(
+        "column",
+        "Column under its own weight",
+        "mean error of the stress over the largest, exact",
+        (2.0, 1.0, 0.5, 0.25),
+        _column,
+        fine=(0.125,),
+        dimensions=1,
+    ),
+    Problem(
+        "bar",
+        "Vibrating bar",
+        "RMS error of the displacement in ten periods, exact for small motions",
+        (5.0, 2.5, 1.25, 0.625),
+        _bar,
+        fine=(0.3125,),
+        dimensions=1,
+    ),
+    Problem(
+        "manufactured",
+        "Manufactured solution in a square",
+        "largest error of a displacement over the amplitude, exact",
+        (1 / 8, 1 / 16, 1 / 32),
+        _manufactured,
+        fine=(1 / 64,),
+        dear={1 / 128: (_CONVECTED, {**_CONVECTED, **_LONGER})},
+    ),
+    Problem(
+        "cantilever",
+        "Cantilever",
+        "RMS distance of the tip from that of finite elements over its fall",
+        (0.5, 0.25),
+        _cantilever,
+        fine=(0.125,),
+        known_to=cantilever.SHARE,
+    ),
+    Problem(
+        "aluminium_bars",
+        "Collapse of aluminium rods",
+        "RMS distance of the surface from the measured one over the height",
+        (0.02, 0.01),
+        _aluminium_bars,
+        fine=(0.005,),
+        method=aluminium_bars.METHOD,
+        known_to=aluminium_bars.ROD / aluminium_bars.HEIGHT,
+        dear={0.0025: ({}, _LONGER, _CURED, {**_CURED, **_LONGER})},
+    ),
+    Problem(
+        "slope_a",
+        "Slope A",
+        "RMS of the errors of peak energy, its time and vertical displacement, by their limits",
+        (0.8, 0.4),
+        _slope_a,
+        fine=(0.2,),
+        method=reference.method(slopes.READING, ledger=False),
+        known_to=slopes.known_to(SLOPE_A, UNCERTAINTY_A),
+        dear={0.1: ({}, _LONGER, {**_CURED, **_LONGER})},
+    ),
+    Problem(
+        "with_stone",
+        "Slope with a stone",
+        "RMS of the errors of peak energy, its time and displacement, by limits of the full model",
+        (0.2, 0.1),
+        _with_stone,
+        method=Method(viscosity=slopes.VISCOSITY),
+        known_to=slopes.known_to(WITH_STONE, UNCERTAINTY_WITH_STONE),
+        dear={0.05: (_LONGER, {**_CURED, **_LONGER})},
+        only=({}, _LONGER, _CURED, {**_CURED, **_LONGER}),
+        models=reference.STONE_MODELS,
+    ),
+)
+PROBLEMS = {problem.name: problem for problem in _ALL}
+"""By name: elastic ones first, then plastic and frictional ones."""
