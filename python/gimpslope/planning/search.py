@@ -150,18 +150,19 @@ def search(
         found = replace(found, pilots=(*found.pilots, pilot))
 
 
-def _begin(problem: Problem, target: Target, directory: Path) -> Search:
+def _begin(problem: Problem, target: Target, directory: Path, tries: int = _TRIES) -> Search:
     """The savings on the coarsest grid and the pilot on the next one; with that as the coarsest
-    anew, twice at most, where a value is off by more than two thirds."""
-    for left in reversed(range(_TRIES)):
-        saved = save(problem.setup, target, directory)
-        setup = problem.on(1, saved.setup)
-        second = fly(setup, directory / "pilot_1.h5", target.quantities)
-        if not left or all(size <= _ALIKE for size in change(saved.pilot, second).values()):
-            break
-        problem = problem.finer()
+    anew, twice at most and if half the budget allows, where a value is off by more than two
+    thirds."""
+    saved = save(problem.setup, target, directory)
+    path = directory / "pilot_1.h5"
+    second = fly(problem.on(1, saved.setup), path, target.quantities)
     end = tail(saved.pilot, second, target.error)
-    return Search(problem, saved, (saved.pilot, second), target, end)
+    found = Search(problem, saved, (saved.pilot, second), target, end)
+    alike = all(size <= _ALIKE for size in change(saved.pilot, second).values())
+    if alike or tries == 1 or found.seconds(1) > _THIRD_SHARE * target.budget:
+        return found
+    return _begin(problem.finer(), target, directory, tries - 1)
 
 
 def _tell(pilot: Pilot) -> None:
