@@ -28,7 +28,10 @@ def run(full: bool) -> Findings:
     jumps = {shape: float(np.abs(np.diff(values)).max()) for shape, values in forces.items()}
     crossing = 2 * float(translation.SPACING[0]) / translation.CELL
     cells = 20 if full else 10
-    errors = {shape: column.press(column.SOFT, cells, shape).error for shape in ("linear", "ugimp")}
+    errors = {
+        shape: column.press(column.SOFT, cells, gs.Method(shape=shape)).error
+        for shape in ("linear", "ugimp")
+    }
     fails = [
         Check.near(
             "linear: jump of the force at a node, sigma A",
