@@ -57,6 +57,15 @@ void check(const Method& m) {
       require(b > 0.0 && std::isfinite(b), "relaxation_time", b, "positive and finite, in s");
       break;
   }
+  const bool blended = m.transfer == Transfer::flip;
+  require(blended || (m.blend.kind == Blend::Kind::alpha && b == 1.0), "blend", b,
+          "alpha 1 with any transfer but flip");
+  require(m.transfer != Transfer::apic || m.shape != "linear", "transfer", "apic",
+          "flip or xpic with shape linear, whose second moment vanishes at the nodes");
+  const std::string orders = "in [1, " + std::to_string(kHighestOrder) + "]";
+  require(m.order >= 1 && m.order <= kHighestOrder, "order", m.order, orders.c_str());
+  require(m.order == 1 || m.transfer == Transfer::xpic, "order", m.order,
+          "1 with any transfer but xpic");
   require(m.threads >= 1 && m.threads <= 1024, "threads", m.threads, "in [1, 1024]");
 }
 

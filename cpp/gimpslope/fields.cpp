@@ -99,10 +99,11 @@ FieldView Solver::field(const std::string& name) {
   if (name == "half_length" && !p.half_length.empty()) return all(p.half_length);
   if (name == "half_length" && has_domains(method_.shape)) return {&half_length_, 0, 0, 2};
   if (name == "deformation_gradient" && !p.deformation.empty()) return all(p.deformation);
+  if (name == "affine" && !p.affine.empty()) return all(p.affine);
   refuse("field", name,
-         "one of position, velocity, stress, volume, mass, plastic_strain, body_force, "
-         "half_length (with ugimp and cpgimp), deformation_gradient (with cpgimp stretch or "
-         "deformation_diagonal) with shape " +
+         "one of position, velocity, stress, volume, mass, plastic_strain, body_force, affine "
+         "(with transfer apic), half_length (with ugimp and cpgimp), deformation_gradient (with "
+         "cpgimp stretch or deformation_diagonal) with shape " +
              method_.shape);
 }
 
@@ -145,9 +146,10 @@ template void Solver::copy_values(const std::string& name, std::span<float> give
 
 void Solver::set_values(const std::string& name, std::span<const double> values) {
   const bool settable = name == "position" || name == "velocity" || name == "stress" ||
-                        name == "volume" || name == "plastic_strain" || name == "body_force";
+                        name == "volume" || name == "plastic_strain" || name == "body_force" ||
+                        name == "affine";
   require(settable, "field", name,
-          "one of position, velocity, stress, volume, plastic_strain, body_force");
+          "one of position, velocity, stress, volume, plastic_strain, body_force, affine");
   check_values(values, static_cast<std::size_t>(field(name).components) * size(), name == "volume",
                name.c_str());
   if (name == "position") grid_.check_reach(values);
@@ -160,6 +162,7 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
+  if (name == "velocity") points_.affine.fill(0.0);  // that of the velocities before
   if (name == "position") bodies_.take_shape(points_, half_length_, cell());
   if (name == "position" || name == "velocity") bodies_.take_motion(points_);
   single_loaded_ = energies_known_ = false;

@@ -80,6 +80,8 @@ void Grid::fit(Cell low, Cell high) {
   if (keeps_body_forces_) body_.assign(4 * columns * rows, 0.0);
   if (keeps_cells_) cells_.assign(4 * columns * rows, 0.0);
   if (keeps_soil_) soil_.assign(4 * columns * rows, 0.0);
+  if (keeps_terms_)
+    for (Buffer<double>* field : {&terms_, &spread_}) field->assign(4 * columns * rows, 0.0);
 }
 
 void Grid::keep(Buffer<double>& update, Cell low, Cell high) const {
@@ -120,6 +122,8 @@ GridView Grid::view() {
                 body_.empty() ? nullptr : body_.data(),
                 cells_.empty() ? nullptr : cells_.data(),
                 soil_.empty() ? nullptr : soil_.data(),
+                terms_.empty() ? nullptr : terms_.data(),
+                spread_.empty() ? nullptr : spread_.data(),
                 {},
                 {},
                 {}};
@@ -135,7 +139,7 @@ GridView Grid::view() {
 std::int64_t Grid::bytes() const {
   std::int64_t total = active_.capacity() * sizeof(NodeRange);
   for (const Buffer<double>* field :
-       {&momentum_, &velocity_, &force_, &update_, &body_, &cells_, &soil_})
+       {&momentum_, &velocity_, &force_, &update_, &body_, &cells_, &soil_, &terms_, &spread_})
     total += sizeof(double) * field->capacity();
   return total;
 }

@@ -34,11 +34,12 @@ class Grid {
   /// last motion of its nodes, by which walls know what they hold.
   void fit(Cell low, Cell high);
 
-  /// Makes room for body forces at the nodes, for sums over cells or for the volume of soil, from
-  /// the next `fit` on.
+  /// Makes room for body forces at the nodes, for sums over cells, for the volume of soil, or for
+  /// the terms of XPIC, from the next `fit` on.
   void keep_body_forces() { keeps_body_forces_ = true; }
   void keep_cells() { keeps_cells_ = true; }
   void keep_soil() { keeps_soil_ = true; }
+  void keep_terms() { keeps_terms_ = true; }
 
   /// Declares the nodes `columns` of the window's `row` active, beside those that are already.
   void activate(int row, NodeRange columns);
@@ -57,8 +58,8 @@ class Grid {
   Cell low_{0, 0};
   int columns_ = 0, rows_ = 0;
   std::vector<NodeRange> active_;
-  bool keeps_body_forces_ = false, keeps_cells_ = false, keeps_soil_ = false;
-  Buffer<double> momentum_, velocity_, force_, update_, body_, cells_, soil_;
+  bool keeps_body_forces_ = false, keeps_cells_ = false, keeps_soil_ = false, keeps_terms_ = false;
+  Buffer<double> momentum_, velocity_, force_, update_, body_, cells_, soil_, terms_, spread_;
 };
 
 }  // namespace gimpslope

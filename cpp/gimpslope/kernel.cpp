@@ -2,7 +2,9 @@
 // compiled with instructions that the processor might lack.
 #include "kernel.hpp"
 
+#include "scheme/musl.hpp"
 #include "scheme/usf.hpp"
+#include "scheme/usl.hpp"
 #include "shape/list.hpp"
 #include "sweep/energies.hpp"
 #include "sweep/speeds.hpp"
@@ -39,6 +41,10 @@ Kernel<Real> with_basis(Basis basis, List<Shape...>) {
 template <class Real>
 Kernel<Real> kernel(SchemeKind scheme, Basis basis) {
   switch (scheme) {
+    case SchemeKind::usl:
+      return with_basis<Usl, Real>(basis, Shapes{});
+    case SchemeKind::musl:
+      return with_basis<Musl, Real>(basis, Shapes{});
     case SchemeKind::usf:
       break;
   }

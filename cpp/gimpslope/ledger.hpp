@@ -20,6 +20,16 @@
 // - external constant but for rounding. That follows from the step: the internal forces do the work
 // dt f . v' = -sum V s : (strain increment), and gravity dt m g . v+. `integration` is what a
 // finite step leaves over; it swings at first order in dt and vanishes with it.
+//
+// Where the stress is updated last, the forces of the stress s- before the step do their work at
+// the velocity v* of the strain, which is v+ or, in MUSL, what the points bring back of it:
+//
+//   transfer     in addition dt (internal force) . (v* - v+)
+//   integration  V w(ds) + dt (internal force + m g) . dv / 2
+//                - (V s - (V s-)) : (strain increment)
+//
+// With PIC and XPIC the points around a node at a wall keep the motion that they have off the wall,
+// so that their mean v- never comes to rest: impact takes it at every step, transfer gives it back.
 #pragma once
 
 #include "instruction_set.hpp"

@@ -5,7 +5,16 @@
 
 namespace gimpslope {
 
-enum class SchemeKind { usf };
+/// Order of the sub-steps: stress first, stress last, or stress last from velocities that have gone
+/// through the points and back.
+enum class SchemeKind { usf, usl, musl };
+
+/// How points take their velocities from the nodes: by the blend of PIC and FLIP, by APIC, or by
+/// XPIC of some order.
+enum class Transfer { flip, apic, xpic };
+
+/// Highest order of XPIC: each costs a sweep over the points.
+constexpr int kHighestOrder = 100;
 
 /// How the half-lengths of a cpGIMP domain follow the deformation.
 enum class DomainUpdate { none, jacobian, stretch, deformation_diagonal };
@@ -70,7 +79,9 @@ struct Method {
   DomainUpdate domain_update = DomainUpdate::none;
   VolumeUpdate volume_update = VolumeUpdate::linear;
   VolumetricStrain volumetric_strain = VolumetricStrain::point;
-  Blend blend;
+  Transfer transfer = Transfer::flip;
+  int order = 1;  // of XPIC
+  Blend blend;    // of PIC and FLIP; PIC with any other transfer
   TimeStep time_step;
   Precision precision = Precision::double_;
   int threads = 1;

@@ -27,15 +27,15 @@ Field<Real>::Field(int components, int points)
     : components_(components), stride_(whole_lines<Real>(points)), values_(components * stride_) {}
 
 template <class Real>
-std::array<Field<Real>*, 10> State<Real>::fields() {
-  return {&position,       &velocity,    &stress,           &volume,      &mass,
-          &plastic_strain, &half_length, &domain_reference, &deformation, &body_force};
+std::array<Field<Real>*, 11> State<Real>::fields() {
+  return {&position,    &velocity,         &stress,      &volume, &mass,      &plastic_strain,
+          &half_length, &domain_reference, &deformation, &affine, &body_force};
 }
 
 template <class Real>
-std::array<const Field<Real>*, 10> State<Real>::fields() const {
-  return {&position,       &velocity,    &stress,           &volume,      &mass,
-          &plastic_strain, &half_length, &domain_reference, &deformation, &body_force};
+std::array<const Field<Real>*, 11> State<Real>::fields() const {
+  return {&position,    &velocity,         &stress,      &volume, &mass,      &plastic_strain,
+          &half_length, &domain_reference, &deformation, &affine, &body_force};
 }
 
 template <class Real>
@@ -54,6 +54,7 @@ PointsView<Real> State<Real>::view() {
           {half_length[0], half_length[1]},
           {domain_reference[0], domain_reference[1]},
           {deformation[0], deformation[1], deformation[2], deformation[3]},
+          {affine[0], affine[1], affine[2], affine[3]},
           {body_force[0], body_force[1]},
           nullptr};
 }
@@ -70,7 +71,7 @@ template class Field<float>;
 template struct State<double>;
 template struct State<float>;
 
-Points::Points(int n, bool own_domains, bool with_deformation)
+Points::Points(int n, bool own_domains, bool with_deformation, bool with_affine)
     : size(n), material(n), number(n), scratch_(n), integer_scratch_(n) {
   for (Field<double>* pair : {&position, &velocity}) *pair = Field<double>(2, n);
   stress = Field<double>(4, n);
@@ -81,6 +82,7 @@ Points::Points(int n, bool own_domains, bool with_deformation)
     std::fill_n(deformation[0], n, 1.0);
     std::fill_n(deformation[3], n, 1.0);
   }
+  if (with_affine) affine = Field<double>(4, n);
   std::iota(number.begin(), number.end(), 0);
 }
 
@@ -132,6 +134,7 @@ void SinglePoints::store(Points& points, bool domains_follow) const {
   copy(state_.volume, points.volume);
   copy(state_.plastic_strain, points.plastic_strain);
   copy(state_.deformation, points.deformation);
+  copy(state_.affine, points.affine);
   if (domains_follow) copy(state_.half_length, points.half_length);
   for (int axis = 0; axis < 2; ++axis)
     for (int k = 0; k < points.size; ++k) points.position[axis][k] += node(axis, k);

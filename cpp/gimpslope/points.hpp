@@ -42,18 +42,19 @@ struct State {
   Field<Real> half_length;       // x, y; empty where all are alike
   Field<Real> domain_reference;  // x, y; as half_length
   Field<Real> deformation;       // xx, xy, yx, yy; empty where no domain follows it
+  Field<Real> affine;            // xx, xy, yx, yy, m2/s; empty but with APIC
   Field<Real> body_force;        // x, y, m/s2; empty until one is given
 
-  std::array<Field<Real>*, 10> fields();
-  std::array<const Field<Real>*, 10> fields() const;
+  std::array<Field<Real>*, 11> fields();
+  std::array<const Field<Real>*, 11> fields() const;
   PointsView<Real> view();
   std::int64_t bytes() const;
 };
 
 struct Points : State<double> {
   /// Room for n points without state; a method whose domains are alike has no half-lengths, one
-  /// that does not update them by F no deformation.
-  Points(int n, bool own_domains, bool deformation);
+  /// that does not update them by F no deformation, one but APIC no affine motion.
+  Points(int n, bool own_domains, bool deformation, bool affine);
 
   int size;
   Buffer<std::int32_t> material;

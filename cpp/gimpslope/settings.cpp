@@ -31,6 +31,7 @@ void Solver::set_damping(const Damping& damping) {
 void Solver::stop() {
   ledger_.damping += kinetic_energy();
   points().velocity.fill(0.0);
+  points().affine.fill(0.0);
   bodies_.stop();
   single_loaded_ = false;
   last_kinetic_ = 0.0;

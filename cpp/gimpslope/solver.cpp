@@ -38,7 +38,7 @@ Points room_for(const InitialPoints& given, const std::vector<Material>& materia
                 const Method& method, double cell) {
   check(given, materials, method.shape);
   return Points(static_cast<int>(given.mass.size()), own_domains(given, method, cell),
-                keeps_deformation(method));
+                keeps_deformation(method), method.transfer == Transfer::apic);
 }
 
 }  // namespace
@@ -60,6 +60,7 @@ Solver::Solver(const InitialPoints& given, std::vector<Material> materials, doub
   bodies_.take_friction(points_, materials_);
   if (bodies_.slide_on_soil()) grid_.keep_soil();
   if (method_.volumetric_strain == VolumetricStrain::cell_average) grid_.keep_cells();
+  if (method_.transfer == Transfer::xpic && method_.order > 1) grid_.keep_terms();
   if (method_.precision == Precision::single) single_ = std::make_unique<SinglePoints>();
   choose_kernel();
   prepare();
@@ -113,6 +114,10 @@ Bodies Solver::bodies_of(const InitialPoints& given) const {
             "stone", number, "a stone of one material where that is rigid");
   require(method_.precision == Precision::double_, "precision", "single",
           "double with rigid stones");
+  require(method_.transfer == Transfer::flip, "transfer",
+          method_.transfer == Transfer::apic ? "apic" : "xpic", "flip with rigid stones");
+  require(method_.scheme == SchemeKind::usf, "scheme",
+          method_.scheme == SchemeKind::usl ? "usl" : "musl", "usf with rigid stones");
   return Bodies(body, method_.threads);
 }
 
@@ -251,7 +256,8 @@ void Solver::step(double dt, double whole, bool wants_energies) {
   if (!failure_.empty()) throw Diverged(failure_, steps_ + 1, time_, -1);
   prepare();
   energies_known_ = false;
-  const double share = alpha_of(whole) * (dt / whole);
+  const bool blended = method_.transfer == Transfer::flip;
+  const double share = blended ? alpha_of(whole) * (dt / whole) : 1.0;
   if (!(share <= 1.0))
     fail("the step of " + text(dt) + " s is too long for the velocity blend", -1);
   const double factor = gravity_.factor(time_ + dt);
@@ -263,6 +269,8 @@ void Solver::step(double dt, double whole, bool wants_energies) {
                         gravity_.x,
                         gravity_.y,
                         damping_.local,
+                        method_.order,
+                        method_.scheme != SchemeKind::usf,
                         courant,
                         wants_energies};
   with_kernel(

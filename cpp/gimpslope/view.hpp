@@ -33,8 +33,8 @@ struct Slab {
 /// One value a point and component, in storage order. In single precision the places are counted
 /// from the node `home` of each point, which is near, so that they do not lose digits to their
 /// distance from the origin. Half-lengths and their reference, the rows of
-/// the deformation gradient, and body forces (a unit of mass) are null where there is no need of
-/// them.
+/// the deformation gradient, those of the affine motion, and body forces (a unit of mass) are
+/// null where there is no need of them.
 template <class Real>
 struct PointsView {
   static constexpr bool relative = sizeof(Real) < sizeof(double);
@@ -46,6 +46,7 @@ struct PointsView {
   Real* half_length[2];
   const Real* domain_reference[2];
   Real* deformation[4];
+  Real* affine[4];
   const Real* body_force[2];
   const std::int32_t* home;  // null where places are absolute
 };
@@ -62,7 +63,8 @@ struct NodeRange {
 /// `cells` {V, V h tr(L) before, V (sxx + syy) / 2, V after the stress update}, sums over the
 /// points in the cell to the upper right of the node, is null unless they are averaged. `soil`
 /// {V h dS/dx, V h dS/dy, V S, -}, the volume of deformable points at the node and its gradient, is
-/// null unless they may slide along a rigid body.
+/// null unless they may slide along a rigid body. `terms` {u, sum of u} and `spread` {S+ S u before
+/// it is divided by the mass, -, -} are those of XPIC, null without.
 struct GridView {
   double cell;
   double left, bottom;       // coordinates of node 0
@@ -70,7 +72,7 @@ struct GridView {
   int stride;                // nodes from one row to the next
   int rows;
   const NodeRange* active;  // of each row
-  double *momentum, *velocity, *force, *update, *body, *cells, *soil;
+  double *momentum, *velocity, *force, *update, *body, *cells, *soil, *terms, *spread;
   WallKind kind[4];
   double friction[4];
   int wall[4];  // the last (left, bottom) or first (right, top) node on or beyond a wall
@@ -191,6 +193,8 @@ struct StepInput {
   double gravity_x, gravity_y;            // that acts
   double full_gravity_x, full_gravity_y;  // at the end of its ramp
   double local_damping;
+  int order;         // of XPIC
+  bool stress_last;  // forces come from the stress before the step
   bool wants_speeds, wants_energies;
 };
 

@@ -57,6 +57,7 @@ py::tuple deform_stress(const Material& material, const Doubles& stress,
 
 void bind_kernel(py::module_& m) {
   m.attr("courant_limit") = kCourantLimit;
+  m.attr("highest_order") = kHighestOrder;
   m.attr("has_threads") = has_threads();
   m.def("instruction_sets", [] {
     std::vector<std::string> names;

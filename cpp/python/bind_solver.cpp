@@ -25,17 +25,15 @@ struct Guarded {
   }
 };
 
-std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
-                              const Doubles& half_length, const Doubles& mass,
-                              const Doubles& volume, const py::array& material,
-                              std::vector<Material> materials, double cell,
-                              std::array<double, 2> origin, const std::array<WallTuple, 4>& walls,
-                              const std::optional<py::array>& stone, const std::string& shape,
-                              const std::string& domain_update, const std::string& volume_update,
-                              const std::string& volumetric_strain, const std::string& scheme,
-                              const Choice& blended, const Choice& step,
-                              const std::string& precision, int threads, bool allow_unstable,
-                              bool ledger, const std::string& instruction_set) {
+std::unique_ptr<Guarded> make(
+    const Doubles& position, const Doubles& velocity, const Doubles& half_length,
+    const Doubles& mass, const Doubles& volume, const py::array& material,
+    std::vector<Material> materials, double cell, std::array<double, 2> origin,
+    const std::array<WallTuple, 4>& walls, const std::optional<py::array>& stone,
+    const std::string& shape, const std::string& domain_update, const std::string& volume_update,
+    const std::string& volumetric_strain, const std::string& scheme, const std::string& transfer,
+    int order, const Choice& blended, const Choice& step, const std::string& precision, int threads,
+    bool allow_unstable, bool ledger, const std::string& instruction_set) {
   Method method;
   method.shape = shape;
   method.domain_update =
@@ -48,7 +46,13 @@ std::unique_ptr<Guarded> make(const Doubles& position, const Doubles& velocity,
   method.volumetric_strain = parse<VolumetricStrain>(
       "volumetric_strain", volumetric_strain,
       {{"point", VolumetricStrain::point}, {"cell_average", VolumetricStrain::cell_average}});
-  method.scheme = parse<SchemeKind>("scheme", scheme, {{"usf", SchemeKind::usf}});
+  method.scheme = parse<SchemeKind>(
+      "scheme", scheme,
+      {{"usf", SchemeKind::usf}, {"usl", SchemeKind::usl}, {"musl", SchemeKind::musl}});
+  method.transfer = parse<Transfer>(
+      "transfer", transfer,
+      {{"flip", Transfer::flip}, {"apic", Transfer::apic}, {"xpic", Transfer::xpic}});
+  method.order = order;
   method.blend = blend_of(blended);
   method.time_step = time_step_of(step);
   method.precision = parse<Precision>(
@@ -209,6 +213,7 @@ void bind_solver(py::module_& m) {
            py::arg("stone") = py::none(), py::arg("shape") = "ugimp",
            py::arg("domain_update") = "none", py::arg("volume_update") = "linear",
            py::arg("volumetric_strain") = "point", py::arg("scheme") = "usf",
+           py::arg("transfer") = "flip", py::arg("order") = 1,
            py::arg("blend") = Choice{"alpha", Blend{}.value},
            py::arg("time_step") = Choice{"courant", TimeStep{}.value},
            py::arg("precision") = "double", py::arg("threads") = Method{}.threads,

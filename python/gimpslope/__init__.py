@@ -20,6 +20,7 @@ from .materials import DruckerPrager, Elastic, Material, Rigid
 from .method import Method
 from .method_warning import MethodWarning
 from .outline import Outline
+from .planning import Answer, Plan, plan
 from .recording import Recording
 from .run import Run, open
 from .scene import Points, Scene
@@ -34,6 +35,7 @@ from .walls import Coulomb, Fixed, Free, Roller, Walls
 __version__ = version("gimpslope")
 
 __all__ = [
+    "Answer",
     "Coulomb",
     "Diverged",
     "DruckerPrager",
@@ -49,6 +51,7 @@ __all__ = [
     "MethodWarning",
     "NotSettledError",
     "Outline",
+    "Plan",
     "Points",
     "Recording",
     "Rigid",
@@ -66,6 +69,7 @@ __all__ = [
     "kernel",
     "load",
     "open",
+    "plan",
     "simulate",
     "stones",
 ]

@@ -57,6 +57,8 @@ class Solver:
         volume_update: str = ...,
         volumetric_strain: str = ...,
         scheme: str = ...,
+        transfer: str = ...,
+        order: int = ...,
         blend: tuple[str, float] = ...,
         time_step: tuple[str, float] = ...,
         precision: str = ...,
@@ -141,6 +143,7 @@ class Machine:
     def read(self, passes: int) -> int: ...
 
 courant_limit: float
+highest_order: int
 has_threads: bool
 
 def instruction_sets() -> list[str]: ...

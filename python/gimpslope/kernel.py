@@ -46,7 +46,8 @@ def shape_functions(
     cell: float,
     origin: npt.ArrayLike = (0.0, 0.0),
 ) -> ShapeFunctions:
-    """Shape functions and gradients of points (Front. Earth Sci. 2022, 10:968250, eqs. 8, 15, 16).
+    """Shape functions and gradients of points (Front. Earth Sci. 2022, 10:968250, eqs. 8, 15, 16),
+    far from any wall.
 
     Parameters
     ----------

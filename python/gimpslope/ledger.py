@@ -31,7 +31,10 @@ class Ledger(NamedTuple):
     impact : what walls take at once of motion into them or off them, and, if they are fixed, along
     damping : taken by local and kinetic damping
     transfer : lost between points and grid: by the share of PIC, which smooths the velocities of
-        points, and by the lumped masses of the nodes
+        points, and by the lumped masses of the nodes. With transfer "apic" the energy of the affine
+        motion that points carry counts as transferred, for it is no part of the kinetic energy;
+        with scheme "musl" what the forces do at the velocities that points bring back, too. With
+        "xpic" it gives back what `impact` takes at every step of the motion of points near walls
     external : work of body forces, and of the part of gravity that its ramp still holds back
     hypoelastic : taken by the rate form of the elastic law, which stores energy a volume while
         volumes change; of either sign, and small where elastic strains are

@@ -1,4 +1,4 @@
-"""The numerical method: shape functions, velocity blend and time step."""
+"""The numerical method: shape functions, scheme, transfer of velocities and time step."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from . import _check, _core
 from ._record import Record
 
 Shape = str  # one of `gimpslope.kernel.shapes()`
-Scheme = Literal["usf"]
+Scheme = Literal["usf", "usl", "musl"]
+Transfer = Literal["flip", "apic", "xpic"]
 DomainUpdate = Literal["jacobian", "stretch", "deformation_diagonal"]
 VolumeUpdate = Literal["linear", "exponential"]
 Precision = Literal["double", "single"]
@@ -26,16 +27,33 @@ class Method(Record):
     Parameters
     ----------
     shape : shape functions, one of `gimpslope.kernel.shapes()`: "linear" (plain MPM, eq. 8),
-        "ugimp" (GIMP with the points' first domains, eqs. 14-16) or "cpgimp" (GIMP with domains
-        that follow the deformation)
-    scheme : order of the sub-steps: "usf" (stress first, eqs. 18-26)
+        "ugimp" (GIMP with the points' first domains, eqs. 14-16), "cpgimp" (GIMP with domains
+        that follow the deformation) or "quadratic_bspline" (Steffen, Kirby and Berzins 2008, IJNME
+        76:922). A spline's nodes go on beyond a free surface; behind a wall the node goes on in
+        line with the two before it, which leaves hats in the half cell at the wall (Steffen,
+        Wallstedt, Guilkey, Kirby and Berzins 2008, CMES 31:107)
+    scheme : order of the sub-steps: "usf" (stress first, eqs. 18-26), "usl" (stress last, from the
+        velocities that the nodes have come to; Sulsky, Chen and Schreyer 1994, CMAME 118:179) or
+        "musl" (stress last, from those that the points bring back to the nodes; Sulsky, Zhou and
+        Schreyer 1995, CPC 87:236). "usl" is unstable where nodes hold little mass (Bardenhagen
+        2002, JCP 180:383). With rigid stones "usf" alone
+    transfer : how points take their velocities from the nodes: "flip" (FLIP with a share of PIC,
+        the next three), "apic" (affine PIC, with which points carry the linear part of the motion
+        around them and keep angular momentum; Jiang and others 2015, ACM Trans. Graph. 34:51; not
+        with shape "linear", whose second moment vanishes at the nodes) or "xpic" (PIC that leaves
+        out the noise that no node sees and, the higher its order, the less else; Hammerquist and
+        Nairn 2017, CMAME 318:724). "apic" and "xpic" act in full in every step, however short. With
+        rigid stones "flip" alone
+    order : of "xpic", in [1, 100], where 1 is PIC and each more costs a sweep over the points;
+        None there: 2
     alpha : share of PIC in the velocity of a point per step, in [0, 1]: 0 is FLIP, 1 is PIC
         (eq. 26). Its effect grows as the step shrinks; the next two do not depend on the step
     viscosity : the blend as a kinematic viscosity nu, m2/s, >= 0:
         alpha = nu dt / (h2 (1/6 + lp2 / (3 h2))) for cell h and half-length lp of a point; the
         divisor is the second moment of the shape function
     relaxation_time : the blend as a time tau, s, > 0: alpha = dt / tau.
-        At most one of alpha, viscosity and relaxation_time; with none alpha is 0.01, the study's
+        At most one of alpha, viscosity and relaxation_time, with transfer "flip" alone; with none
+        alpha is 0.01, the study's
     courant : time step as a share of cell / (wave speed + speed of the points),
         in (0, 1], any positive number with `allow_unstable`
     time_step : fixed time step, s, > 0. At most one of courant and time_step; with none
@@ -65,6 +83,8 @@ class Method(Record):
 
     shape: Shape = "ugimp"
     scheme: Scheme = "usf"
+    transfer: Transfer = "flip"
+    order: int | None = None
     alpha: float | None = None
     viscosity: float | None = None
     relaxation_time: float | None = None
@@ -81,6 +101,7 @@ class Method(Record):
     def __post_init__(self) -> None:
         _check.one_of("shape", self.shape, _core.shapes())
         _check.one_of("scheme", self.scheme, get_args(Scheme))
+        _check.one_of("transfer", self.transfer, get_args(Transfer))
         _check.one_of("volume_update", self.volume_update, get_args(VolumeUpdate))
         _check.one_of("volumetric_strain", self.volumetric_strain, get_args(VolumetricStrain))
         _check.one_of("precision", self.precision, get_args(Precision))
@@ -90,12 +111,16 @@ class Method(Record):
             ledger=_check.flag("ledger", self.ledger),
         )
         self._check_domain_update()
+        self._check_transfer()
         self._check_blend()
         self._check_step()
 
     @property
     def blend(self) -> tuple[str, float]:
-        """What sets the velocity blend, and its value: ("alpha", 0.01) unless given."""
+        """What sets the velocity blend, and its value: ("alpha", 0.01) unless given, and
+        ("alpha", 1.0) with any transfer but "flip"."""
+        if self.transfer != "flip":
+            return "alpha", 1.0
         return self._given("alpha", "viscosity", "relaxation_time") or ("alpha", 0.01)
 
     @property
@@ -116,6 +141,8 @@ class Method(Record):
         return {
             "shape": self.shape,
             "scheme": self.scheme,
+            "transfer": self.transfer,
+            "order": self.order or (2 if self.transfer == "xpic" else 1),
             "blend": self.blend,
             "time_step": self.step,
             "domain_update": self.domain_update or default_update,
@@ -137,6 +164,23 @@ class Method(Record):
                 f"with shape {self.shape!r}"
             )
 
+    def _check_transfer(self) -> None:
+        if self.transfer == "apic" and self.shape == "linear":
+            raise ValueError(
+                "transfer must be 'flip' or 'xpic' with shape 'linear', whose second moment "
+                "vanishes at the nodes, got 'apic'"
+            )
+        if self.order is None:
+            return
+        self._store(order=_check.whole("order", self.order, 1))
+        if self.transfer != "xpic":
+            raise ValueError(
+                f"order must be None unless transfer is 'xpic', got {self.order} "
+                f"with transfer {self.transfer!r}"
+            )
+        if self.order > _core.highest_order:
+            raise ValueError(f"order must be at most {_core.highest_order}, got {self.order}")
+
     def _check_blend(self) -> None:
         if self.alpha is not None:
             self._store(alpha=_check.in_range("alpha", self.alpha, 0, 1))
@@ -144,7 +188,13 @@ class Method(Record):
             self._store(viscosity=_check.not_negative("viscosity", self.viscosity))
         if self.relaxation_time is not None:
             self._store(relaxation_time=_check.positive("relaxation_time", self.relaxation_time))
-        self._given("alpha", "viscosity", "relaxation_time")
+        given = self._given("alpha", "viscosity", "relaxation_time")
+        if given and self.transfer != "flip":
+            name, value = given
+            raise ValueError(
+                f"{name} must be None unless transfer is 'flip', got {value} "
+                f"with transfer {self.transfer!r}"
+            )
 
     def _check_step(self) -> None:
         if self.time_step is not None:

@@ -39,8 +39,9 @@ class Solver:
     set it whole. The kernel keeps its
     points sorted by cell: `view` and `numbers` show them as they lie in memory.
 
-    A step takes its strains from the velocities at its start, so velocities belong to half a step
-    before the positions, stresses and volumes to a whole step before. For second order in the step,
+    A step of the scheme "usf" takes its strains from the velocities at its start, so velocities
+    belong to half a step before the positions, stresses and volumes to a whole step before; with
+    "usl" and "musl" velocities belong to half a step before all else. For second order in the step,
     give them so.
 
     Parameters
@@ -241,7 +242,8 @@ class Solver:
 
         Names: position, velocity, body_force (n, 2); stress (n, 4); volume, mass, plastic_strain
         (n,); half_length (n, 2), with shape "ugimp" or "cpgimp"; deformation_gradient (n, 4) as
-        xx, xy, yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal".
+        xx, xy, yx, yy, with shape "cpgimp" and domain_update "stretch" or "deformation_diagonal";
+        affine (n, 4), with transfer "apic".
         """
         return self._core.view(name)
 
@@ -289,6 +291,20 @@ class Solver:
     @body_force.setter
     def body_force(self, values: npt.ArrayLike) -> None:
         self._set("body_force", values, 2)
+
+    @property
+    def affine(self) -> FloatArray:
+        """B of Jiang and others 2015, the moment of the nodes' velocity about each point, xx, xy,
+        yx, yy (velocity by arm), m2/s, shape (n, 4); with transfer "apic" alone.
+
+        The angular momentum of a point is m (x v_y - y v_x + B_yx - B_xy). Setting velocities sets
+        it to zero.
+        """
+        return self._core.get("affine")
+
+    @affine.setter
+    def affine(self, values: npt.ArrayLike) -> None:
+        self._set("affine", values, 4)
 
     @property
     def volume(self) -> FloatArray:
@@ -361,7 +377,7 @@ class Solver:
 
     @property
     def alpha(self) -> float:
-        """Share of PIC in the next step."""
+        """Share of PIC in the next step; 1 with any transfer but "flip"."""
         return self._core.alpha
 
     @property

@@ -14,7 +14,7 @@ import pybind11
 import pytest
 
 ROOT = Path(__file__).parents[2]
-CHECKS = Path(__file__).with_name("quadratic_bspline.py")
+CHECKS = Path(__file__).with_name("cubic_bspline.py")
 
 
 def blocks() -> dict[str, str]:
@@ -69,7 +69,7 @@ def test_shape_function_of_contributing(tmp_path: Path) -> None:
         ROOT / "python/gimpslope", site / "gimpslope", ignore=shutil.ignore_patterns("_core.*.so")
     )
     shapes, given = source / "cpp/gimpslope/shape", blocks()
-    (shapes / "quadratic_bspline.hpp").write_text(given["cpp"])
+    (shapes / "cubic_bspline.hpp").write_text(given["cpp"])
     (shapes / "list.hpp").write_text(changed((shapes / "list.hpp").read_text(), given["diff"]))
     install(source, tmp_path / "build", site)
     # Without site, so that no editable installation comes before this one.

@@ -150,13 +150,17 @@ class Whole:
 
 
 def shares(
-    bodies: Sequence[Body], shape: str, lines: tuple[Array, Array], cell: float
+    bodies: Sequence[Body],
+    shape: str,
+    lines: tuple[Array, Array],
+    cell: float,
+    walls: Sequence[Wall],
 ) -> tuple[Array, Array]:
     """The share of each node's cell that each body fills, (n_bodies, n_nodes), and its gradient a
     cell, (n_bodies, n_nodes, 2)."""
     share, slope = [], []
     for body in bodies:
-        s, sx, sy = weights(shape, body.points()[0], body.half_length, lines, cell)
+        s, sx, sy = weights(shape, body.points()[0], body.half_length, lines, cell, walls)
         share.append(body.volume @ s / cell**2)
         slope.append(-np.stack([body.volume @ sx, body.volume @ sy], axis=1) / cell)
     return np.array(share), np.array(slope)
@@ -215,9 +219,8 @@ def _contacts_of(
         both = half + other_size[k]
         if between @ between > (both + SEEN * cell) ** 2 + both**2:
             continue
-        near, opposite = (
-            of[np.hypot(*(of - middle).T) <= SURROUND * cell] for of in (places, others)
-        )
+        around = max(SURROUND * cell, float(np.hypot(*between)))
+        near, opposite = (of[np.hypot(*(of - middle).T) <= around] for of in (places, others))
         line = shortest_between(near, opposite)
         normal = line / np.hypot(*line)
         gap = float(between @ normal) - both

@@ -1,4 +1,5 @@
-"""The material points and their step: update stress first (USF)."""
+"""The material points and their step: update stress first (USF), last (USL), or last from the
+velocities that the points bring back (MUSL)."""
 
 from collections.abc import Iterator, Sequence
 
@@ -63,16 +64,21 @@ class Reference:
         domain_update: str = "none",
         volume_update: str = "linear",
         volumetric_strain: str = "point",
+        scheme: str = "usf",
+        transfer: str = "flip",
+        order: int = 1,
         blend: tuple[str, float],
         time_step: tuple[str, float],
         margin: int = 8,
     ) -> None:
-        _check("shape", shape, "linear", "ugimp", "cpgimp")
+        _check("shape", shape, "linear", "ugimp", "cpgimp", "quadratic_bspline")
         _check(
             "domain_update", domain_update, "none", "jacobian", "stretch", "deformation_diagonal"
         )
         _check("volume_update", volume_update, "linear", "exponential")
         _check("volumetric_strain", volumetric_strain, "point", "cell_average")
+        _check("scheme", scheme, "usf", "usl", "musl")
+        _check("transfer", transfer, "flip", "apic", "xpic")
         _check("blend", blend[0], "alpha", "viscosity", "relaxation_time")
         _check("time_step", time_step[0], "fixed", "courant")
         self.position = np.array(position, float)
@@ -94,7 +100,7 @@ class Reference:
         self.rigid = np.isin(self.material, rigid)
         number = np.full(n, -1) if stone is None else np.array(stone, int)
         square = np.repeat(np.sqrt(self.volume)[:, None] / 2, 2, axis=1)
-        domain = square if shape == "linear" else self.half_length
+        domain = self.half_length if "gimp" in shape else square
         self.bodies = [
             Body(
                 np.flatnonzero(number == k),
@@ -114,7 +120,9 @@ class Reference:
         self.volumetric_strain = volumetric_strain
         self.origin = np.asarray(origin)
         self.ledger = Ledger()
-        self.blend, self.step_rule = blend, time_step
+        self.scheme, self.blend, self.step_rule = scheme, blend, time_step
+        self.transfer, self.order = transfer, order
+        self.affine = np.zeros((n, 2, 2))  # B of APIC
         self.set_gravity(0.0, 0.0, 0.0)
         self.set_damping(0.0, False)
 
@@ -159,7 +167,9 @@ class Reference:
         if kind == "relaxation_time":
             return dt / value
         h = self.cell
-        lp = 0.0 if self.shape == "linear" else float(self.first_half_length.mean())
+        lp = {"linear": 0.0, "quadratic_bspline": h / 2}.get(
+            self.shape, float(self.first_half_length.mean())
+        )
         return value * dt / (h**2 * (1 / 6 + lp**2 / (3 * h**2)))
 
     def advance(self, steps: int) -> None:
@@ -176,18 +186,20 @@ class Reference:
 
     def _step(self) -> None:
         dt = self.time_step
-        s, sx, sy = weights(self.shape, self.position, self.half_length, self.lines, self.cell)
+        s, sx, sy = weights(
+            self.shape, self.position, self.half_length, self.lines, self.cell, self.walls
+        )
         if not np.allclose(s.sum(axis=1), 1.0, atol=1e-9):
             raise RuntimeError("a point has left the grid; make margin larger")
 
         soft_mass = np.where(self.rigid, 0.0, self.mass)
         mass = s.T @ soft_mass
-        momentum = s.T @ (soft_mass[:, None] * self.velocity)
+        momentum = self._momentum(s)
         v_raw = _divide(momentum, mass)
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
         held, contacts = [], []
         if self.bodies:
-            share, slope = shares(self.bodies, self.shape, self.lines, self.cell)
+            share, slope = shares(self.bodies, self.shape, self.lines, self.cell, self.walls)
             soil = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
             held = list(held_nodes(share, soil))
             contacts = list(stone_contacts(self.bodies, self.cell, dt))
@@ -207,23 +219,9 @@ class Reference:
             normals[number] = found.normal[of]
             v[of] = before_strain(meeting[of], normals[number], v_raw[of], of_stone[of])
 
-        velocity_gradient = np.stack([sx @ v, sy @ v], axis=2)
-        cells = np.unique(
-            np.floor((self.position - self.origin) / self.cell), axis=0, return_inverse=True
-        )[1].ravel()
-        if self.volumetric_strain == "cell_average":
-            trace = np.trace(velocity_gradient, axis1=1, axis2=2)
-            change = (self._cell_mean(trace, cells) - trace) / 2
-            velocity_gradient = velocity_gradient + change[:, None, None] * np.eye(2)
-        velocity_gradient[self.rigid] = 0.0
-        self._deform(velocity_gradient, dt)
-
-        sigma = _tensor(self.stress)[:, :2, :2]
-        if self.volumetric_strain == "cell_average":
-            mean = np.trace(sigma, axis1=1, axis2=2) / 2
-            sigma = sigma + (self._cell_mean(mean, cells) - mean)[:, None, None] * np.eye(2)
-        sigma = sigma * np.where(self.rigid, 0.0, self.volume)[:, None, None]
-        internal = -(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1])
+        if self.scheme == "usf":
+            self._strain(sx, sy, v, dt)
+        internal = self._internal_force(sx, sy)
         share_of_gravity = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
         weight = mass[:, None] * self.gravity * share_of_gravity
         body = s.T @ (soft_mass[:, None] * self.body_force)
@@ -305,14 +303,19 @@ class Reference:
             body=body,
             damping=damping,
             held=np.any(held, axis=0) if held else np.zeros(len(mass), bool),
+            stress_first=self.scheme == "usf",
         )
 
-        alpha = self.alpha(dt)
-        pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
         self.ledger.transfer += self._kinetic_energy_of_soil()
-        self.velocity = alpha * pic + (1 - alpha) * flip
+        self._take_velocity(s, mass, v_raw, v, v_new, dt)
         self.ledger.transfer -= self._kinetic_energy_of_soil()
-        self.position = self.position + dt * pic
+        if self.scheme == "usl":
+            self._strain_last(sx, sy, v_new, v_new, internal, dt)
+        elif self.scheme == "musl":
+            back = _divide(self._momentum(s), mass)
+            back = hold_velocity(back, self.node_velocity, self.nodes, self.walls, self.cell)
+            self._strain_last(sx, sy, back, v_new, internal, dt)
+        self.position = self.position + dt * s @ v_new
         for stone, whole, drag_of in zip(self.bodies, wholes, drags, strict=True):
             taken, worked, damped = stone.follow(
                 whole,
@@ -353,6 +356,75 @@ class Reference:
             of = (cells == cell) & ~self.rigid
             mean[of] = np.average(values[of], weights=self.volume[of])
         return mean
+
+    def _momentum(self, s: Array) -> Array:
+        """That of the soil at the nodes, with its affine motion about each point."""
+        brought = s.T @ (np.where(self.rigid, 0.0, self.mass)[:, None] * self.velocity)
+        if self.transfer == "apic":
+            arm, weighted = self._arms(s)
+            around = self.affine @ np.linalg.pinv(weighted @ arm) @ weighted
+            brought = brought + np.tensordot(self.mass, around, axes=1).T
+        return np.asarray(brought)
+
+    def _arms(self, s: Array) -> tuple[Array, Array]:
+        """From each point to the nodes, (n, nodes, 2), and times their weights, (n, 2, nodes)."""
+        arm = self.nodes[None] - self.position[:, None]
+        return arm, np.swapaxes(s[:, :, None] * arm, 1, 2)
+
+    def _take_velocity(
+        self, s: Array, mass: Array, v_raw: Array, v: Array, v_new: Array, dt: float
+    ) -> None:
+        if self.transfer == "flip":
+            alpha = self.alpha(dt)
+            pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
+            self.velocity = alpha * pic + (1 - alpha) * flip
+        elif self.transfer == "apic":
+            self.affine = np.swapaxes(self._arms(s)[1] @ v_new, 1, 2)
+            self.velocity = s @ v_new
+        else:
+            to_nodes = np.where(mass > 0, 1 / np.where(mass > 0, mass, 1.0), 0.0)[:, None]
+            at_walls = near_walls(self.nodes, self.walls, self.cell)
+            for axis in (0, 1):
+                held = at_walls & (v[:, axis] == 0)
+                smooth = s @ np.where(held[:, None], 0.0, to_nodes * s.T * self.mass)  # S S+
+                noise = np.linalg.matrix_power(np.eye(len(s)) - smooth, self.order)
+                self.velocity[:, axis] -= noise @ self.velocity[:, axis]
+            self.velocity = self.velocity + s @ (v_new - v)
+
+    def _cells(self) -> NDArray[np.int64]:
+        """A number for the cell of each point."""
+        places = np.floor((self.position - self.origin) / self.cell)
+        return np.unique(places, axis=0, return_inverse=True)[1].ravel()
+
+    def _strain(self, sx: Array, sy: Array, v: Array, dt: float) -> Array:
+        """Deform by the node velocities v; gives the strain increments (n, 2, 2)."""
+        gradient = np.stack([sx @ v, sy @ v], axis=2)
+        if self.volumetric_strain == "cell_average":
+            trace = np.trace(gradient, axis1=1, axis2=2)
+            change = (self._cell_mean(trace, self._cells()) - trace) / 2
+            gradient = gradient + change[:, None, None] * np.eye(2)
+        gradient[self.rigid] = 0.0
+        self._deform(gradient, dt)
+        return (gradient + np.swapaxes(gradient, 1, 2)) * dt / 2
+
+    def _strain_last(
+        self, sx: Array, sy: Array, v: Array, v_new: Array, internal: Array, dt: float
+    ) -> None:
+        """Deform by v after forces that belong to the stress before; v_new moves the points."""
+        before = self.stress * self.volume[:, None]
+        strain = self._strain(sx, sy, v, dt)
+        late = _tensor(self.stress * self.volume[:, None] - before)[:, :2, :2]
+        self.ledger.integration -= float(np.sum(late * strain))
+        self.ledger.transfer += float(dt * np.sum(internal * (v - v_new)))
+
+    def _internal_force(self, sx: Array, sy: Array) -> Array:
+        sigma = _tensor(self.stress)[:, :2, :2]
+        if self.volumetric_strain == "cell_average":
+            mean = np.trace(sigma, axis1=1, axis2=2) / 2
+            change = self._cell_mean(mean, self._cells()) - mean
+            sigma = sigma + change[:, None, None] * np.eye(2)
+        sigma = sigma * np.where(self.rigid, 0.0, self.volume)[:, None, None]
+        return np.asarray(-(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1]))
 
     def _deform(self, velocity_gradient: Array, dt: float) -> None:
         """Volume, deformation gradient and stress from the velocity gradient (n, 2, 2)."""
@@ -422,7 +494,7 @@ class Reference:
             return
         energy = self.kinetic_energy()
         if energy < self.last_kinetic_energy:
-            self.velocity = np.zeros_like(self.velocity)
+            self.velocity, self.affine = np.zeros_like(self.velocity), np.zeros_like(self.affine)
             for body in self.bodies:
                 body.stop()
             self.ledger.damping += energy

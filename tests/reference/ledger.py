@@ -74,9 +74,11 @@ def nodes(
     body: Array,
     damping: Array,
     held: NDArray[np.bool_],
+    stress_first: bool,
 ) -> None:
     """Nodes go from the raw velocity to the one that walls allow, and by the forces to `after`;
-    those that rigid stones hold, by these."""
+    those that rigid stones hold, by these. Points are strained by the velocity that the walls
+    allow or, where not `stress_first`, afterwards."""
     m = mass[:, None]
     middle = (before + after) / 2
     impulse = m * (after - before) - dt * (internal + weight + body + damping)
@@ -91,7 +93,8 @@ def nodes(
         ledger.impact += float(taken[~rubbed & ~by_stones].sum())
     ledger.damping -= float(dt * np.sum(damping * middle))
     ledger.external += float(dt * np.sum((body + weight - full_weight) * middle))
-    ledger.integration -= float(dt / 2 * np.sum((internal - full_weight) * (after - before)))
+    of_strains = internal if stress_first else -internal
+    ledger.integration -= float(dt / 2 * np.sum((of_strains - full_weight) * (after - before)))
     ledger.transfer += float(np.sum(m * (after**2 - raw**2)) / 2)
 
 

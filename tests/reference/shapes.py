@@ -1,7 +1,11 @@
 """Shape functions as dense matrices over a fixed window of grid nodes."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
+
+from .walls import SIDES, Wall
 
 Array = NDArray[np.float64]
 
@@ -36,19 +40,50 @@ def averaged_slope(z: Array, half_length: Array, h: float) -> Array:
     return (hat(z + half_length, h) - hat(z - half_length, h)) / (2 * half_length)
 
 
+def continue_behind_walls(
+    values: Array, slopes: Array, axis: int, x: Array, lines: Array, h: float, walls: Sequence[Wall]
+) -> None:
+    """Let the line of nodes behind a wall go on from the two before it,
+    v[wall + into] = 2 v[wall] - v[wall - into], in B-splines (n_points, n_lines) of points at x.
+    What lies beyond the wall goes with the wall's own line."""
+    for (normal, into), (kind, _, place) in zip(SIDES, walls, strict=True):
+        if normal != axis or kind == "free":
+            continue
+        at, beyond = int(np.argmin(np.abs(lines - place))), into * (x - place)
+        near = np.abs(beyond) <= h / 2
+        for of in (values, slopes):
+            behind = of[near, at + into]
+            of[near, at] += 2 * behind
+            of[near, at - into] -= behind
+            of[near, at + into] = 0.0
+        outside = near & (beyond > 0)
+        values[outside] = slopes[outside] = 0.0
+        values[outside, at] = 1.0
+
+
 def weights(
-    shape: str, position: Array, half_length: Array, lines: tuple[Array, Array], h: float
+    shape: str,
+    position: Array,
+    half_length: Array,
+    lines: tuple[Array, Array],
+    h: float,
+    walls: Sequence[Wall] = (),
 ) -> tuple[Array, Array, Array]:
     """S, dS/dx and dS/dy, each (n_points, n_nodes), on the grid lines x (n_x,) and y (n_y,).
 
-    Node (i, j) is column i * n_y + j.
+    Node (i, j) is column i * n_y + j. Walls on grid lines change quadratic B-splines.
     """
     value, slope = [], []
     for axis in (0, 1):
         z = position[:, axis, None] - lines[axis][None, :]
         l = half_length[:, axis, None]  # noqa: E741
+        if shape == "quadratic_bspline":
+            l = np.full_like(l, h / 2)  # noqa: E741
         value.append(hat(z, h) if shape == "linear" else averaged_hat(z, l, h))
         slope.append(hat_slope(z, h) if shape == "linear" else averaged_slope(z, l, h))
+        if shape == "quadratic_bspline" and walls:
+            x = position[:, axis]
+            continue_behind_walls(value[axis], slope[axis], axis, x, lines[axis], h, walls)
 
     def product(x: Array, y: Array) -> Array:
         return (x[:, :, None] * y[:, None, :]).reshape(len(position), -1)

@@ -34,6 +34,9 @@ OPTIONS = (
     "domain_update",
     "volume_update",
     "volumetric_strain",
+    "scheme",
+    "transfer",
+    "order",
     "blend",
 )
 

@@ -93,9 +93,8 @@ def test_progress_shows_time_speed_and_what_is_left(
 ) -> None:
     assert cli.main([word for word in COARSE if word != "--quiet"]) == 0
     shown = capsys.readouterr().err
-    for text in ("settling", "slide", "of 0.20 s", "M point-steps/s", "<"):
+    for text in ("gravity", "settling", "slide", "of 0.20 s", "M point-steps/s", "<"):
         assert text in shown
-    assert "gravity" not in shown  # applied at once
 
 
 def test_until_rest(undrawn: list[Any]) -> None:
@@ -194,6 +193,16 @@ def test_slopes_with_stones(
     )
 
 
+def test_rigid_stones_with_friction(undrawn: list[Any]) -> None:
+    words = "run round --cell 0.4 --duration 0.01 --stone-model rigid --stone-friction 30 --quiet"
+    assert cli.main(words.split()) == 0
+    run = gs.open("round.h5")
+    assert run.scene.materials[1] == gs.Rigid(2400, friction=30)
+    assert run.setup.scene == reference.slope(
+        "round", cell=0.4, stone_model="rigid", stone_friction=30
+    )
+
+
 SCENE = """
 cell = 0.8
 [outline]
@@ -264,6 +273,9 @@ def test_a_repetition_that_differs_says_so(
         ("run soil --stone-modulus 1e9", "--stone-modulus must be left out for soil"),
         ("run round --seed -1", "seed must be a whole number >= 0, got -1"),
         ("run round --stone-modulus 0", "young must be"),
+        ("run round --stone-friction 30", "stone_friction must be left out"),
+        ("run round --stone-model rigid --stone-friction 95", "friction must be"),
+        ("run soil --stone-friction 30", "--stone-friction must be left out for soil"),
         ("run made.h5 --output made.h5 --overwrite", "not the run to repeat"),
         ("run made.h5 --until-rest", "--until-rest must be left out of a run to repeat"),
         ("run soil --output soil.txt", "--output must be a file that ends in .h5, got 'soil.txt'"),

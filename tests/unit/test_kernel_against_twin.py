@@ -81,6 +81,15 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
         {"volumetric_strain": "cell_average", "shape": "linear"},
         "linear",
     ),
+    "quadratic_bspline": ({"shape": "quadratic_bspline"}, "linear"),
+    "cell_average_quadratic_bspline": (
+        {"volumetric_strain": "cell_average", "shape": "quadratic_bspline"},
+        "quadratic_bspline",
+    ),
+    "viscosity_quadratic_bspline": (
+        {"blend": ("viscosity", 0.3), "shape": "quadratic_bspline"},
+        "quadratic_bspline",
+    ),
     "elastic": (soil(law="elastic"), "base"),
     "outer": (soil(cone="outer"), "base"),
     "inner": (soil(cone="inner"), "base"),
@@ -163,6 +172,19 @@ OPTIONS |= {
     ),
 }
 
+# Splines change at walls.
+OPTIONS |= {
+    f"quadratic_bspline_{name}": (OPTIONS[name][0] | {"shape": "quadratic_bspline"}, name)
+    for name in (
+        "box_of_rollers",
+        "fixed_box",
+        "coulomb_box",
+        "mixed_box",
+        "other_mixed_box",
+        "walls_inside_the_block",
+    )
+}
+
 
 def kernel(scene: dict[str, Any], instruction_set: str = "") -> State:
     compiled = solver(scene, instruction_set=instruction_set, ledger=True)
@@ -170,7 +192,7 @@ def kernel(scene: dict[str, Any], instruction_set: str = "") -> State:
     fields = {name: compiled.get(name) for name in FIELDS}
     entries = compiled.ledger().values()  # to be judged by the size of the kinetic energy
     fields["energies"] = np.array([compiled.energies()["kinetic"], *entries])
-    if scene.get("shape") != "linear":
+    if "gimp" in scene["shape"]:
         fields["half_length"] = compiled.get("half_length")
     if scene.get("domain_update") in ("stretch", "deformation_diagonal"):
         fields["deformation_gradient"] = compiled.get("deformation_gradient").reshape(-1, 2, 2)

@@ -73,6 +73,26 @@ def test_looking_on_changes_nothing_in_single_precision() -> None:
     assert_identical(state(stepped), after(precision="single"))
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize(
+    "member",
+    [
+        {"scheme": "usl", "transfer": "xpic", "order": 3},
+        {"scheme": "musl", "transfer": "apic", "shape": "quadratic_bspline"},
+    ],
+    ids=["usl-xpic", "musl-apic"],
+)
+def test_any_number_of_threads_with_other_members(member: dict[str, Any], precision: str) -> None:
+    options = member | {"precision": precision, "blend": ("alpha", 1.0)}
+    scene = sliding(30, 60) | {"time_step": ("courant", 0.1), "volumetric_strain": "cell_average"}
+    states = []
+    for threads in (1, 3):
+        stepped = solver(scene, threads=threads, **options)
+        stepped.advance(FEW)
+        states.append(state(stepped))
+    assert_identical(*states)
+
+
 @pytest.mark.parametrize("threads", [2, 3])
 def test_any_number_of_threads_with_cells_and_body_forces(threads: int) -> None:
     """Averages over cells and forces at nodes are sums that slabs share at their borders."""

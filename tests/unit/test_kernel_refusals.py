@@ -16,6 +16,7 @@ SCENE: dict[str, Any] = block(8, 6, speed=0.1) | {
     "gravity": (0.0, -9.81, 0.0),
 }
 N = len(SCENE["mass"])
+PIC = ("alpha", 1.0)
 STABLE = solver(SCENE).stable_time_step
 
 
@@ -111,7 +112,14 @@ ARGUMENTS: list[tuple[dict[str, Any], tuple[str, ...]]] = [
     ({name: SCENE[name][:0] for name in ARRAYS}, ("0",)),
     # names
     ({"shape": "cubic"}, ("shape", "cubic", "linear", "ugimp", "cpgimp")),
-    ({"scheme": "usl"}, ("scheme", "usl", "usf")),
+    ({"scheme": "usp"}, ("scheme", "usp", "usf", "usl", "musl")),
+    ({"transfer": "tpic"}, ("transfer", "tpic", "flip", "apic", "xpic")),
+    ({"transfer": "apic"}, ("blend", "0", "alpha 1")),
+    ({"transfer": "xpic", "blend": ("viscosity", 1.0)}, ("blend", "1", "alpha 1")),
+    ({"transfer": "xpic", "blend": PIC, "order": 0}, ("order", "0", "[1, 100]")),
+    ({"transfer": "xpic", "blend": PIC, "order": 101}, ("order", "101", "[1, 100]")),
+    ({"transfer": "apic", "blend": PIC, "order": 2}, ("order", "2", "xpic")),
+    ({"transfer": "apic", "blend": PIC, "shape": "linear"}, ("transfer", "apic", "linear")),
     (
         {"volumetric_strain": "nodal"},
         ("volumetric_strain", "nodal", "point", "cell_average"),

@@ -7,7 +7,7 @@ from dataclasses import FrozenInstanceError, replace
 import numpy as np
 import pytest
 
-from gimpslope.materials import DruckerPrager, Elastic, Material
+from gimpslope.materials import DruckerPrager, Elastic, Material, Rigid
 
 SOIL = DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)
 STONE = DruckerPrager(density=2400, young=20e9, poisson=0.2, friction=42, cohesion=900e3)
@@ -132,7 +132,13 @@ def test_cohesionless_material_bears_no_tension():
 
 @pytest.mark.parametrize(
     "material",
-    [Elastic(1800, 30e6, 0.33), SOIL, replace(SOIL, dilation=5, cone="inner", tension_cutoff=10)],
+    [
+        Elastic(1800, 30e6, 0.33),
+        SOIL,
+        replace(SOIL, dilation=5, cone="inner", tension_cutoff=10),
+        Rigid(2400),
+        Rigid(2400, friction=30, mutual_friction=10),
+    ],
 )
 def test_round_trip_through_json(material):
     data = json.loads(json.dumps(material.to_dict()))

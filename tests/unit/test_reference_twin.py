@@ -418,3 +418,24 @@ def test_leaving_the_grid_and_misspelt_options_are_errors() -> None:
         block(2, "bspline")
     with pytest.raises(ValueError, match="cone is 'oute'"):
         Material(1, 1, 0.2, cone="oute")
+
+
+def test_splines_meet_linear_motion_up_to_the_walls() -> None:
+    """They add up to one and reproduce places by the nodes within the walls alone; what touches a
+    wall moves with the node there."""
+    x = np.random.default_rng(2).uniform(0.0, 5 * H, (60, 2))
+    x[:3, 0], x[3:6, 1] = 0.0, 5 * H
+    line = H * np.arange(-3, 9, dtype=np.float64)
+    nodes = np.array([(a, b) for a in line for b in line])
+    walls = [("roller", 0.0, 0.0), ("fixed", 0.0, 5 * H)] * 2
+    s, sx, sy = weights("quadratic_bspline", x, np.zeros_like(x), (line, line), H, walls)
+    outside = np.any((nodes < -H / 2) | (nodes > 5.5 * H), axis=1)
+    assert not s[:, outside].any()
+    assert s.min() >= 0.0
+    np.testing.assert_allclose(s.sum(axis=1), 1.0)
+    np.testing.assert_allclose(s @ nodes, x, atol=1e-15)
+    np.testing.assert_allclose(sx @ nodes, np.tile([1.0, 0.0], (60, 1)), atol=1e-13)
+    np.testing.assert_allclose(sy @ nodes, np.tile([0.0, 1.0], (60, 1)), atol=1e-13)
+    at_left, at_top = nodes[:, 0] == 0.0, np.isclose(nodes[:, 1], 5 * H)
+    np.testing.assert_allclose(s[:3][:, at_left].sum(axis=1), 1.0)
+    np.testing.assert_allclose(s[3:6][:, at_top].sum(axis=1), 1.0)

@@ -26,6 +26,8 @@ FIELDS = ("position", "velocity", "stress", "volume", "plastic_strain")
 CELL = 0.5
 RIGID = {"density": 2600.0, "law": "rigid"}
 HEAVY = {"density": 4000.0, "law": "rigid"}
+SLIDING = RIGID | {"interface_friction": 25.0, "mutual_friction": 25.0}
+ROUGH = RIGID | {"mutual_friction": 30.0}
 SMOOTH, FIXED = ("coulomb", 0.0, 0.0), ("fixed", 0.0, 0.0)
 
 
@@ -103,6 +105,12 @@ def disk_alone() -> dict[str, Any]:
     return {"material": np.where(BASE["stone"] == 7, 2, BASE["material"])}
 
 
+def sliding(friction: float) -> dict[str, Any]:
+    """Soil slides along both rigid stones."""
+    angles = {"interface_friction": friction, "mutual_friction": friction}
+    return {"materials": [SOIL, RIGID | angles, STONE, HEAVY | angles]}
+
+
 def pebbles() -> dict[str, Any]:
     """Two more stones: of two points, and of a single one, which has no spin."""
     stone, material = BASE["stone"].copy(), BASE["material"].copy()
@@ -119,6 +127,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "flip": ({"blend": ("alpha", 0.0)}, "base"),
     "pic": ({"blend": ("alpha", 1.0)}, "base"),
     "linear": ({"shape": "linear"}, "base"),
+    "quadratic_bspline": ({"shape": "quadratic_bspline"}, "linear"),
     "linear_flip": ({"shape": "linear", "blend": ("alpha", 0.0)}, "linear"),
     "own_half_lengths": (
         {
@@ -168,6 +177,20 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
         "heap",
     ),
     "heap_cpgimp": (heap() | cpgimp("stretch"), "heap"),
+    "sliding": (sliding(25.0), "base"),
+    "sliding_smooth": (sliding(0.0), "sliding"),
+    "sliding_linear": (sliding(25.0) | {"shape": "linear"}, "sliding"),
+    "sliding_body_force": (
+        sliding(25.0) | {"body_force": 5.0 * RANDOM.standard_normal((N, 2))},
+        "sliding",
+    ),
+    "sliding_damped": (sliding(25.0) | {"damping": (0.3, False)}, "sliding"),
+    "one_slides": (
+        sliding(25.0) | {"materials": [SOIL, SLIDING, STONE, HEAVY]},
+        "sliding",
+    ),
+    "sliding_heap": (heap() | {"materials": [SOIL, SLIDING]}, "heap"),
+    "heap_with_friction": (heap() | {"materials": [SOIL, ROUGH]}, "heap"),
 }
 
 
@@ -245,7 +268,7 @@ def expected(name: str) -> State:
     plain = twin_of(scene_of(name))
     nearest, met = np.inf, 0
     for _ in range(BASE["steps"]):
-        share, _ = shares(plain.bodies, plain.shape, plain.lines, plain.cell)
+        share, _ = shares(plain.bodies, plain.shape, plain.lines, plain.cell, plain.walls)
         nearest = min(nearest, distance_to_a_tie(share))
         met += len(list(stone_contacts(plain.bodies, plain.cell, 1.0)))
         plain.advance(1)

@@ -37,6 +37,20 @@ def test_refused_in_single_precision() -> None:
     assert_refused(lambda: patch(0, 1, [SOIL, ROCK], precision="single"), *parts)
 
 
+@pytest.mark.parametrize(
+    ("name", "value", "allowed"),
+    [
+        ("scheme", "usl", "usf"),
+        ("scheme", "musl", "usf"),
+        ("transfer", "apic", "flip"),
+        ("transfer", "xpic", "flip"),
+    ],
+)
+def test_members_of_the_family_that_are_refused(name: str, value: str, allowed: str) -> None:
+    parts = (name, value, f"{allowed} with rigid stones")
+    assert_refused(lambda: patch(0, 1, [SOIL, ROCK], **{name: value}), *parts)
+
+
 def test_refused_outside_a_stone() -> None:
     parts = ("stone", "-1", "the number of a stone where the material is rigid")
     assert_refused(lambda: patch(-1, 1, [SOIL, ROCK]), *parts)
@@ -57,6 +71,8 @@ def test_no_material_becomes_rigid_or_ceases_to_be() -> None:
     assert_refused(lambda: solver.set_materials([ROCK, ROCK]), *parts, "number 0")
     heavier = gs.Rigid(ROCK.density + 1.0)
     assert_refused(lambda: solver.set_materials([SOIL, heavier]), *parts, "number 1", "density")
+    rougher = gs.Rigid(ROCK.density, friction=10.0)
+    assert_refused(lambda: solver.set_materials([SOIL, rougher]), *parts, "number 1", "friction")
     solver.set_materials([gs.Elastic(2000.0, 2e5, 0.2), ROCK])
     solver.advance(3)
 
@@ -91,6 +107,12 @@ def test_refused_in_the_plain_loop() -> None:
 @pytest.mark.parametrize("density", [0.0, -1.0, float("nan"), float("inf"), "heavy"])
 def test_density_is_refused(density: Any) -> None:
     assert_refused(lambda: gs.Rigid(density), "density", str(density).split(".")[0])
+
+
+@pytest.mark.parametrize("angle", [-1.0, 90.0, float("nan"), "rough"])
+@pytest.mark.parametrize("name", ["friction", "mutual_friction"])
+def test_friction_is_refused(name: str, angle: Any) -> None:
+    assert_refused(lambda: gs.Rigid(2600.0, **{name: angle}), "friction", str(angle).split(".")[0])
 
 
 def test_refused_to_step_by_a_wave_speed_where_no_wave_runs() -> None:

@@ -45,13 +45,14 @@ def test_time_step_is_that_of_the_soil() -> None:
     assert thrown(ANGLE_IRON, 0.0, 0.0).stable_time_step == np.inf
 
 
-def stony(threads: int, steps: int) -> _core.Solver:
+def stony(threads: int, steps: int, friction: float | None = None) -> _core.Solver:
     """A column of soil with sixteen rigid stones that spreads over a floor."""
     scene = sliding()
     x, y = scene["position"].T
     number = (x // 4 + 8 * (y // 4)).astype(np.int32)
     stone = np.where(scene["material"] == 1, number, -1)
-    scene["materials"][1] = {"density": 2600.0, "law": "rigid"}
+    angles = {"interface_friction": friction, "mutual_friction": friction or 0.0}
+    scene["materials"][1] = {"density": 2600.0, "law": "rigid"} | angles
     solver = core_solver(scene, stone=stone, threads=threads, ledger=True)
     solver.advance(steps)
     return solver
@@ -68,6 +69,20 @@ def state(solver: _core.Solver) -> dict[str, FloatArray]:
 @pytest.fixture(scope="module")
 def alone() -> dict[str, FloatArray]:
     return state(stony(1, 400))
+
+
+@pytest.fixture(scope="module")
+def sliding_alone() -> dict[str, FloatArray]:
+    return state(stony(1, 400, 25.0))
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3, 4])
+def test_any_number_of_threads_where_soil_slides(
+    alone: dict[str, FloatArray], sliding_alone: dict[str, FloatArray], threads: int
+) -> None:
+    for name, found in state(stony(threads, 400, 25.0)).items():
+        np.testing.assert_array_equal(found, sliding_alone[name], err_msg=name)
+    assert np.abs(sliding_alone["bodies"] - alone["bodies"])[0, :, :2].max() > 0.1
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 4])

@@ -133,6 +133,13 @@ def test_stages_in_the_words_of_their_classes(tmp_path: Path) -> None:
     assert setup_of(tmp_path, loaded).stages == gs.Stages(gs.Gravity(0.5), gs.Settling(1e-6))
 
 
+def test_members_of_the_family_by_their_names(tmp_path: Path) -> None:
+    text = SLOPE + SOIL
+    text += '[method]\nshape = "quadratic_bspline"\nscheme = "musl"\ntransfer = "xpic"\norder = 3\n'
+    member = gs.Method(shape="quadratic_bspline", scheme="musl", transfer="xpic", order=3)
+    assert setup_of(tmp_path, text).method == member
+
+
 def test_stones_are_drawn_as_the_function_draws_them(tmp_path: Path) -> None:
     text = (
         SLOPE
@@ -287,3 +294,18 @@ def test_a_run_gives_its_setup_back(tmp_path: Path) -> None:
     run = setup.simulate(tmp_path / "a.h5", progress=False)
     assert run.setup == setup
     assert gs.load(tmp_path / "a.h5") == gs.load(tmp_path / "scene.toml") == setup
+
+
+def test_friction_of_rigid_stones(tmp_path: Path) -> None:
+    rock = (
+        GRANITE.splitlines()[1]
+        + """
+law = "rigid"
+density = 2600
+friction = 30
+mutual_friction = 20
+"""
+    )
+    text = SLOPE + SOIL + rock + STONES + STONE
+    (first, _) = setup_of(tmp_path, text).scene.stones
+    assert first.material == gs.Rigid(2600, friction=30, mutual_friction=20)

@@ -12,7 +12,14 @@ Array = NDArray[np.float64]
 
 CELL = 0.4
 ORIGIN = (0.3, -0.7)
-SHAPES = [("linear", 0.0), ("ugimp", 1.0), ("ugimp", 2.99), ("cpgimp", 1.0), ("cpgimp", 2.99)]
+SHAPES = [
+    ("linear", 0.0),
+    ("ugimp", 1.0),
+    ("ugimp", 2.99),
+    ("cpgimp", 1.0),
+    ("cpgimp", 2.99),
+    ("quadratic_bspline", 0.0),
+]
 IDS = [f"{shape} to {widest:g} cells" for shape, widest in SHAPES]
 
 
@@ -53,6 +60,12 @@ def hat_mean(z: Array, half_length: Array) -> Array:
     return np.asarray(area / (high - low))
 
 
+def averaged_over(shape: str, half_length: Array) -> Array:
+    """Half-lengths over which a shape function is the mean of the hat: of the quadratic spline,
+    three boxes one cell wide, convolved, of which two are the hat, half a cell."""
+    return np.full_like(half_length, CELL / 2) if "bspline" in shape else half_length
+
+
 def test_every_shape_function_is_tested() -> None:
     assert {shape for shape, _ in SHAPES} == set(_core.shapes())
 
@@ -80,7 +93,7 @@ def test_values_are_means_of_the_hat(shape: str, widest: float) -> None:
     position, half_length = sample(widest)
     nodes, values, gradients = evaluate(shape, position, half_length)
     z = position[:, None, :] - nodes
-    domain = np.broadcast_to(half_length[:, None, :], z.shape)
+    domain = np.broadcast_to(averaged_over(shape, half_length)[:, None, :], z.shape)
     if shape == "linear":
         hats = np.maximum(0.0, 1.0 - np.abs(z) / CELL)
     else:
@@ -99,7 +112,7 @@ def test_no_node_with_a_value_is_left_out(shape: str, widest: float) -> None:
     lines = np.arange(-20, 20) * CELL
     for axis, other in ((0, 2), (1, 1)):
         z = position[:, axis, None] - (ORIGIN[axis] + lines)
-        domain = np.broadcast_to(half_length[:, axis, None], z.shape)
+        domain = np.broadcast_to(averaged_over(shape, half_length)[:, axis, None], z.shape)
         hats = np.maximum(0, 1 - np.abs(z) / CELL) if shape == "linear" else hat_mean(z, domain)
         np.testing.assert_allclose(value.sum(axis=other), hats, atol=1e-14)
 

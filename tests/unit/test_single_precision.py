@@ -11,7 +11,10 @@ from gimpslope import Method
 DIGITS = 2.0**-24  # relative error of a number rounded to single precision
 
 
-@pytest.mark.parametrize(("shape", "steps"), [("linear", 20), ("ugimp", 200), ("cpgimp", 200)])
+@pytest.mark.parametrize(
+    ("shape", "steps"),
+    [("linear", 20), ("ugimp", 200), ("cpgimp", 200), ("quadratic_bspline", 200)],
+)
 @pytest.mark.parametrize("volumetric_strain", ["point", "cell_average"])
 def test_state_stays_near_that_of_double(shape: str, steps: int, volumetric_strain: str) -> None:
     """Few steps with linear hats: where a point crosses a cell a step later, its force jumps."""

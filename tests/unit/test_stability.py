@@ -7,6 +7,7 @@ import pytest
 
 import gimpslope as gs
 from gimpslope import _core
+from gimpslope.method import Scheme
 
 CELL = 1.0
 
@@ -53,10 +54,20 @@ def test_contiguous_domains_are_stable_at_the_limit(per_side: int, poisson: floa
     assert largest > 1.0
 
 
-@pytest.mark.parametrize("shape", ["linear", "ugimp"])
+@pytest.mark.parametrize("per_side", [1, 2, 3, 4])
+def test_splines_are_stable_at_the_limit(per_side: int) -> None:
+    """They are smoother than the domains are."""
+    places = [(0.0, 0.0), (0.2, 0.0), (0.31, 0.45), (0.5, 0.5)]
+    largest = max(assembled("quadratic_bspline", per_side, 0.33, place) for place in places)
+    assert _core.courant_limit * largest <= 2.0
+    assert largest > 1.0
+
+
+@pytest.mark.parametrize("scheme", ["usf", "musl"])
+@pytest.mark.parametrize("shape", ["linear", "ugimp", "quadratic_bspline"])
 @pytest.mark.parametrize("poisson", [0.0, 0.45])
 def test_scattered_points_with_free_edges_are_stable_at_the_limit(
-    shape: str, poisson: float
+    shape: str, poisson: float, scheme: Scheme
 ) -> None:
     """Nodes at an edge that hold little mass are stiffer than the bound, but their motion is taken
     anew from the points at every step. Energy of a random motion under FLIP must not grow; an
@@ -71,7 +82,9 @@ def test_scattered_points_with_free_edges_are_stable_at_the_limit(
         points = gs.Points(
             place, np.full((n, 2), 0.25), np.full(n, 0.25), np.full(n, 250.0), np.zeros(n, int)
         )
-        method = gs.Method(shape=shape, alpha=0.0, time_step=CELL / material.wave_speed)
+        method = gs.Method(
+            shape=shape, scheme=scheme, alpha=0.0, time_step=CELL / material.wave_speed
+        )
         solver = gs.Solver(points, [material], cell=CELL, method=method)
         solver.velocity = 1e-6 * random.uniform(-1, 1, lattice.shape)
         before = solver.energies().kinetic

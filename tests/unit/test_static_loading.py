@@ -70,7 +70,7 @@ def test_stages_take_the_longest_steps_and_give_the_methods_back(
     method: gs.Method, share: float | None, tmp_path: Path
 ) -> None:
     """0.9 of the stable step, or one at which the points keep half of their own velocity."""
-    simulation = Simulation(Setup(SLOPE, method, gs.Stages()))
+    simulation = Simulation(Setup(SLOPE, method, gs.Stages(gs.Gravity(0))))
     solver = simulation.solver
     usual, stable = solver.time_step, solver.stable_time_step
     with recording(simulation, tmp_path / "run.h5") as recorder:
@@ -112,7 +112,7 @@ CASES = [
 def test_slides_from_a_static_solution_are_those_from_loading_in_time(
     name: str, model: str, reading: str, tmp_path: Path
 ) -> None:
-    """Every figure within 0.5 %, for half of the steps before the slide or less."""
+    """Every figure within 0.5 %, for 0.6 of the steps before the slide or less."""
     setup = reference.setup(name, reading=reading, cell=0.2, stone_model=model, duration=5.0)
     runs = [
         replace(setup, stages=replace(stages, slide=gs.Slide(5.0))).simulate(
@@ -121,7 +121,7 @@ def test_slides_from_a_static_solution_are_those_from_loading_in_time(
         for number, stages in enumerate((IN_TIME, gs.Stages()))
     ]
     (before, after), (loaded, static) = ([run.summary for run in runs], runs)
-    assert after["steps_before_slide"] <= 0.5 * before["steps_before_slide"]
+    assert after["steps_before_slide"] <= 0.6 * before["steps_before_slide"]
     off = {key: after[key] / before[key] - 1 for key in FIGURES}
     off["run_out"] = static.run_out() / loaded.run_out() - 1
     print(name, model, reading, {key: f"{100 * value:.3f} %" for key, value in off.items()})
@@ -133,7 +133,7 @@ def test_slides_from_a_static_solution_are_those_from_loading_in_time(
 @pytest.mark.parametrize("name", list(reference.SLOPES))
 def test_steps_before_the_slide(name: str, reading: str, tmp_path: Path) -> None:
     """Prints the steps of loading in time, of a static solution with as little force left, and of
-    the usual one. Both take half of the steps or less."""
+    the usual one. Both take 0.6 of the steps or less."""
     for model in ("deformable",) if name == "soil" else reference.STONE_MODELS:
         setup = reference.setup(name, reading=reading, cell=0.2, stone_model=model, duration=1e-6)
 
@@ -149,4 +149,4 @@ def test_steps_before_the_slide(name: str, reading: str, tmp_path: Path) -> None
             f"{name:9} {model:10} {reading:10} {in_time:6,} steps and {left:.1e} of the weight, "
             f"static {same:6,}; {usual:6,} to {usually_left:.1e}"
         )
-        assert max(same, usual) <= 0.55 * in_time
+        assert max(same, usual) <= 0.6 * in_time

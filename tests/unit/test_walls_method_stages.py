@@ -50,6 +50,8 @@ def test_method_has_the_defaults_of_the_study():
         "shape": "ugimp",
         "precision": "double",
         "scheme": "usf",
+        "transfer": "flip",
+        "order": 1,
         "blend": ("alpha", 0.01),
         "time_step": ("courant", 0.4),
         "domain_update": "none",
@@ -69,6 +71,8 @@ def test_method_has_the_defaults_of_the_study():
         ({"viscosity": 0.5625}, ("viscosity", 0.5625)),
         ({"viscosity": 0}, ("viscosity", 0.0)),
         ({"relaxation_time": np.float32(0.5)}, ("relaxation_time", 0.5)),
+        ({"transfer": "apic"}, ("alpha", 1.0)),
+        ({"transfer": "xpic", "order": 3}, ("alpha", 1.0)),
     ],
 )
 def test_blend(given, blend):
@@ -104,7 +108,10 @@ def test_domain_update(given, update):
     [
         ("shape", "gimp", ValueError),
         ("shape", None, TypeError),
-        ("scheme", "usl", ValueError),
+        ("scheme", "usp", ValueError),
+        ("transfer", "tpic", ValueError),
+        ("transfer", 2, TypeError),
+        ("order", 2, ValueError),
         ("alpha", -0.01, ValueError),
         ("alpha", 1.01, ValueError),
         ("alpha", math.nan, ValueError),
@@ -148,10 +155,31 @@ def test_method_refuses_two_ways_of_giving_one_thing(given):
         Method(**given)
 
 
+@pytest.mark.parametrize(("given", "order"), [({}, 2), ({"order": 1}, 1), ({"order": 100}, 100)])
+def test_order_of_xpic(given, order):
+    assert Method(transfer="xpic", **given).to_core()["order"] == order
+
+
+@pytest.mark.parametrize(
+    ("given", "refusal"),
+    [
+        ({"transfer": "apic", "order": 2}, "order must be None unless .*'xpic', got 2 .*'apic'"),
+        ({"transfer": "xpic", "order": 0}, "order must be .*got 0"),
+        ({"transfer": "xpic", "order": 101}, "order must be at most 100, got 101"),
+        ({"transfer": "apic", "alpha": 0.5}, "alpha must be None .*'flip', got 0.5 .*'apic'"),
+        ({"transfer": "xpic", "viscosity": 0.5}, "viscosity must be None .*, got 0.5 .*'xpic'"),
+        ({"transfer": "apic", "shape": "linear"}, "transfer must be .*'linear'.*, got 'apic'"),
+    ],
+)
+def test_members_that_do_not_go_together_are_refused(given, refusal):
+    with pytest.raises(ValueError, match=refusal):
+        Method(**given)
+
+
 def test_stages_find_a_static_solution_unless_told():
     settling = Settling(unbalanced=2e-3, limit=20.0, damping="kinetic", courant=0.9)
     slide = Slide(duration=10.0, rest_ratio=0.0, rest_change=None)
-    assert Stages() == Stages(Gravity(ramp=0.0), settling, slide)
+    assert Stages() == Stages(Gravity(ramp=0.2), settling, slide)
 
 
 def test_criteria_of_settling():
@@ -259,6 +287,7 @@ def test_local_damping_refuses(coefficient):
     [
         Walls(right=Coulomb(0.2), top=Roller()),
         Method(shape="cpgimp", viscosity=0.1, time_step=1e-5, threads=3, allow_unstable=True),
+        Method(shape="quadratic_bspline", scheme="musl", transfer="xpic", order=3),
         Stages(Gravity(0), Settling(damping="local", coefficient=0.5), Slide(4.0, 1e-3)),
         Stages(settling=Settling(unbalanced=0.1, courant=0.5), slide=Slide().until_rest()),
     ],

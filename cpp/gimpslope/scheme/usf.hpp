@@ -6,32 +6,22 @@
 #include "../sweep/dilatation.hpp"
 #include "../sweep/energies.hpp"
 #include "../sweep/loops.hpp"
-#include "../sweep/move.hpp"
+#include "../sweep/motion.hpp"
 #include "../sweep/nodes.hpp"
-#include "../sweep/speeds.hpp"
+#include "../sweep/null_space.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 template <class Shape, bool kOwnDomain, class Real>
 struct Usf {
-  static void prepare(const View<Real>& view) {
-    together(*view.team, [&](int thread) {
-      for_each_slab(view, thread, [&](int slab) {
-        for_each_block(view, slab, [&](const Block& block) {
-          if (is_rigid(view, block)) return;
-          scatter_block(view, block.begin, block.end - block.begin);
-        });
-      });
-    });
-  }
+  static void prepare(const View<Real>& view) { bring_all<Shape, kOwnDomain>(view); }
 
   static void step(const View<Real>& view, const StepInput& input, Report* reports) {
     together(*view.team, [&](int thread) {
       Stopwatch watch(thread == 0 ? view.seconds : nullptr);
-      for_each_row(view, thread, [&](int row) {
-        start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
-      });
+      start_rows(view, thread);
+      sum_terms<Shape, kOwnDomain>(view, input.order, thread);
       with_bodies(view, [&](const auto& doubles) {
         hold_nodes_of_bodies<Shape, kOwnDomain>(doubles, thread);
       });
@@ -40,13 +30,8 @@ struct Usf {
       watch.lap(&Seconds::stress);
       with_bodies(view,
                   [&](const auto& doubles) { take_forces_of_bodies(doubles, input, thread); });
-      for_each_row(view, thread, [&](int row) {
-        if (view.ledger != nullptr) {
-          finish_nodes<true>(view.grid, row, input, view.ledger + row);
-        } else {
-          finish_nodes<false>(view.grid, row, input, nullptr);
-        }
-      });
+      finish_rows<Afterwards::none>(view, input, thread);
+      add_terms(view, thread);
       with_bodies(view, [&](const auto& doubles) { move_bodies(doubles, input, thread); });
       watch.lap(&Seconds::nodes);
       for_each_slab(view, thread, [&](int slab) {
@@ -54,7 +39,8 @@ struct Usf {
         report.ledger = reports[slab].ledger;
         report.energies = reports[slab].energies;
         for_each_block(view, slab, [&](const Block& block) {
-          if (report.lost < 0 && !is_rigid(view, block)) move_block(view, input, block, report);
+          if (report.lost < 0 && !is_rigid(view, block))
+            move_block<Shape, kOwnDomain>(view, input, block, report);
         });
         reports[slab] = report;
       });
@@ -103,39 +89,6 @@ struct Usf {
         });
       });
     }
-  }
-
-  /// What the nodes need to know of points for the next step.
-  static void scatter_block(const View<Real>& view, int begin, int n) {
-    if (view.grid.soil == nullptr) {
-      Weights<Shape, Need::values> weights;
-      evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-      scatter_momentum(view, begin, n, weights);
-    } else {
-      Weights<Shape, Need::gradients> weights;
-      evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-      scatter_momentum(view, begin, n, weights);
-      scatter_soil(view, begin, n, weights);
-    }
-  }
-
-  static void move_block(const View<Real>& view, const StepInput& input, const Block& block,
-                         Report& report) {
-    const int begin = block.begin, n = block.end - block.begin;
-    Weights<Shape, Need::values> weights;
-    evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-    Change change;
-    gather_change(view, n, weights, change);
-    move_points(view, begin, n, input.alpha, change, report);
-    if (report.lost >= 0) return;
-    if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
-    if (report.lost >= 0) return;
-    scatter_block(view, begin, n);
-    if (input.wants_speeds) add_speeds(view, block, report.speeds);
-    if constexpr (!PointsView<Real>::relative)
-      if (input.wants_energies)
-        add_energy_of_motion(view, block, input.full_gravity_x, input.full_gravity_y,
-                             report.energies);
   }
 };
 

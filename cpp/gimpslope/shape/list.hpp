@@ -3,6 +3,7 @@
 
 #include "gimp.hpp"
 #include "linear.hpp"
+#include "quadratic_bspline.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -11,7 +12,7 @@ template <class... Shape>
 struct List {};
 
 /// Of those that go by the same name, the one with narrower domains first.
-using Shapes = List<Linear, Gimp, WideGimp>;
+using Shapes = List<Linear, Gimp, WideGimp, QuadraticBspline>;
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
 }  // namespace gimpslope

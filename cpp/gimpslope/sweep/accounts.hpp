@@ -37,13 +37,15 @@ struct NodeStep {
   Pair total() const { return internal + weight + body + damping; }
 };
 
-/// What a step does at a node.
-inline void add_node(const NodeStep& s, double dt, Ledger& sum) {
+/// What a step does at a node. With `stress_last` the internal forces do their work at the velocity
+/// after the step.
+inline void add_node(const NodeStep& s, double dt, Ledger& sum, bool stress_last = false) {
   for (int c = 0; c < 2; ++c) {
     const double middle = 0.5 * (s.before[c] + s.after[c]), change = s.after[c] - s.before[c];
     sum.damping -= dt * s.damping[c] * middle;
     sum.external += dt * (s.body[c] + s.weight[c] - s.full_weight[c]) * middle;
-    sum.integration -= 0.5 * dt * (s.internal[c] - s.full_weight[c]) * change;
+    const double late = stress_last ? -s.internal[c] : s.internal[c];
+    sum.integration -= 0.5 * dt * (late - s.full_weight[c]) * change;
     sum.transfer += 0.5 * s.mass * (s.after[c] - s.raw[c]) * (s.after[c] + s.raw[c]);
   }
 }
@@ -113,6 +115,24 @@ void add_stress_work(const View<Real>& view, int begin, int n, const Elastic& la
   sum.plastic += plastic;
   sum.hypoelastic += hypoelastic;
   sum.integration += integration;
+}
+
+/// Work that n points take up with their stress after the step, less that which the forces of their
+/// stress before it did.
+template <class Strains, class Real>
+void add_work_of_old_forces(const View<Real>& view, int begin, int n, const Strains& s,
+                            const StressBefore& before, Ledger& sum) {
+  const PointsView<Real>& p = view.points;
+  double more = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const int m = begin + k;
+    const double after =
+        p.stress_xx[m] * s.xx[k] + p.stress_yy[m] * s.yy[k] + 2.0 * p.stress_xy[m] * s.xy[k];
+    const double old =
+        before.xx[k] * s.xx[k] + before.yy[k] * s.yy[k] + 2.0 * before.xy[k] * s.xy[k];
+    more += p.volume[m] * after - before.volume[k] * old;
+  }
+  sum.integration -= more;
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

@@ -1,11 +1,12 @@
 // Rigid bodies in a step, in a velocity field of their own.
 //
 // A body holds the nodes up to some way outside of its edge, by the share of their cells that it
-// fills: they move with it, and soil sticks to it there. In other nodes it takes no part, so that
-// it acts as large as it is, and bodies that are near each other do not stick together. Body and
-// held nodes make one rigid body that keeps their momentum and angular momentum and takes up the
-// forces of the soil at the nodes. It is then kept from running into walls and other bodies by
-// impulses at the places where they meet.
+// fills. In other nodes it takes no part, so that it acts as large as it is, and bodies that are
+// near each other do not stick together. Where soil sticks to it, body and held nodes make one
+// rigid body that keeps their momentum and angular momentum and takes up the forces of the soil at
+// the nodes; where soil may slide along it, the nodes keep their own motion and take impulses from
+// it (interface.hpp). It is then kept from running into walls and other bodies by impulses at the
+// places where they meet.
 #pragma once
 
 #include "body_motion.hpp"

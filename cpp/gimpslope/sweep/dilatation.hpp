@@ -36,12 +36,24 @@ void dilatation_block(const View<Real>& view, const Block& block) {
   }
 }
 
-/// Second: stresses from the averaged strains, and mean stresses to the cells.
+/// Mean stresses to the cells.
+template <class Real>
+void mean_stress_block(const View<Real>& view, const Block& block) {
+  const PointsView<Real>& p = view.points;
+  for (int k = 0; k < block.end - block.begin; ++k) {
+    const double volume = p.volume[block.begin + k];
+    const double xx = p.stress_xx[block.begin + k], yy = p.stress_yy[block.begin + k];
+    double* cell = cell_of(view, block.begin, k);
+    cell[2] += 0.5 * volume * (xx + yy);
+    cell[3] += volume;
+  }
+}
+
+/// Stresses from the averaged strains.
 template <class Shape, bool kOwnDomain, class Real>
-void averaged_stress_block(const View<Real>& view, const StepInput& input, const Block& block,
+void averaged_strain_block(const View<Real>& view, const StepInput& input, const Block& block,
                            Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
-  const PointsView<Real>& p = view.points;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
@@ -54,13 +66,14 @@ void averaged_stress_block(const View<Real>& view, const StepInput& input, const
     gradient.vy_y[k] += change;
   }
   deform_block(view, input, block, gradient, ledger);
-  for (int k = 0; k < n; ++k) {
-    const double volume = p.volume[begin + k];
-    const double xx = p.stress_xx[begin + k], yy = p.stress_yy[begin + k];
-    double* cell = cell_of(view, begin, k);
-    cell[2] += 0.5 * volume * (xx + yy);
-    cell[3] += volume;
-  }
+}
+
+/// Second: stresses from the averaged strains, and mean stresses to the cells.
+template <class Shape, bool kOwnDomain, class Real>
+void averaged_stress_block(const View<Real>& view, const StepInput& input, const Block& block,
+                           Ledger& ledger) {
+  averaged_strain_block<Shape, kOwnDomain>(view, input, block, ledger);
+  mean_stress_block(view, block);
 }
 
 /// Third: forces of the stresses with their averaged mean.

@@ -26,20 +26,14 @@ inline void find_window(const View<double>& view, int body, int (&corner)[2]) {
   }
 }
 
-/// The nodes that a body reaches, with its share of their cells and how that falls.
-template <class Shape, bool kOwnDomain>
-void reach_nodes(const View<double>& view, int thread, int body) {
+/// Adds up the share of each cell that a body fills, and with gradients how it falls: three numbers
+/// for each node of its window, whose lower left one is at `corner`.
+template <class Shape, bool kOwnDomain, Need kNeed>
+void add_shares(const View<double>& view, int body, const int (&corner)[2], double* shares) {
   const BodiesView& all = *view.bodies;
   const GridView& g = view.grid;
   const BodyState& state = all.state[body];
-  const int width = all.window, size = width * width;
-  double* shares = all.shares + 3 * thread * size;  // three for each node
-  for (int k = 0; k < 3 * size; ++k) shares[k] = 0.0;
-  const double per_cell = 1.0 / g.cell, per_area = per_cell * per_cell;
-  int corner[2];
-  find_window(view, body, corner);
-  const int left = corner[0], bottom = corner[1];
-
+  const double per_area = 1.0 / g.cell * (1.0 / g.cell);
   alignas(kCacheLine) double x[kBlock], y[kBlock], lx[kBlock], ly[kBlock];
   View<double> local = view;  // of some points of the body, one after the other
   local.points.x = x;
@@ -47,7 +41,7 @@ void reach_nodes(const View<double>& view, int thread, int body) {
   local.points.half_length[0] = lx;
   local.points.half_length[1] = ly;
   const double cosine = std::cos(state.angle), sine = std::sin(state.angle);
-  Weights<Shape, Need::gradients> weights;
+  Weights<Shape, kNeed> weights;
   for (int begin = all.begin[body]; begin < all.begin[body + 1]; begin += kBlock) {
     const int left_over = all.begin[body + 1] - begin, n = left_over < kBlock ? left_over : kBlock;
     for (int k = 0; k < n; ++k) {
@@ -60,18 +54,40 @@ void reach_nodes(const View<double>& view, int thread, int body) {
     evaluate<Shape, kOwnDomain>(local, 0, n, weights);
     for (int k = 0; k < n; ++k) {
       const int row = weights.first[k] / g.stride, column = weights.first[k] - row * g.stride;
-      double* first = shares + 3 * ((row - bottom) * width + column - left);
+      double* first = shares + 3 * ((row - corner[1]) * all.window + column - corner[0]);
       const double share = view.points.volume[all.member[begin + k]] * per_area;
       for (int j = 0; j < Shape::nodes; ++j) {
         for (int i = 0; i < Shape::nodes; ++i) {
-          const double *x_of = weights.pair_x(i, k), *y_of = weights.pair_y(j, k);
-          double* node = first + 3 * (j * width + i);
+          double* node = first + 3 * (j * all.window + i);
           node[0] += share * weights.value_x(i, k) * weights.value_y(j, k);
-          node[1] += share * x_of[0] * y_of[0];
-          node[2] += share * x_of[1] * y_of[1];
+          if constexpr (kNeed == Need::gradients) {
+            const double *along_x = weights.pair_x(i, k), *along_y = weights.pair_y(j, k);
+            node[1] += share * along_x[0] * along_y[0];
+            node[2] += share * along_x[1] * along_y[1];
+          }
         }
       }
     }
+  }
+}
+
+/// The nodes that a body reaches, with its share of their cells and, where soil may slide along it,
+/// how that falls.
+template <class Shape, bool kOwnDomain>
+void reach_nodes(const View<double>& view, int thread, int body) {
+  const BodiesView& all = *view.bodies;
+  const GridView& g = view.grid;
+  const BodyState& state = all.state[body];
+  const int width = all.window, size = width * width;
+  double* shares = all.shares + 3 * thread * size;
+  for (int k = 0; k < 3 * size; ++k) shares[k] = 0.0;
+  int corner[2];
+  find_window(view, body, corner);
+  const int left = corner[0], bottom = corner[1];
+  if (all.friction[body] < 0.0) {
+    add_shares<Shape, kOwnDomain, Need::values>(view, body, corner, shares);
+  } else {
+    add_shares<Shape, kOwnDomain, Need::gradients>(view, body, corner, shares);
   }
   double most = 0.0;
   for (int k = 0; k < size; ++k) most = shares[3 * k] > most ? shares[3 * k] : most;

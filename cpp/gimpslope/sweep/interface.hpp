@@ -72,7 +72,7 @@ inline Meeting meeting_of(const BodyNode& node, const Pair& apart, double fricti
   return std::fabs(along) > friction * into ? Meeting::slipping : Meeting::stuck;
 }
 
-/// A row of the matrix that takes the soil's approach to the impulse that it takes: mass times
+/// The matrix that turns the approach of the soil into the impulse that it takes: its mass times
 /// (n - s mu t) n^T where it slips, with s the direction of slip, and times one where it sticks.
 struct Answer {
   double xx = 0.0, xy = 0.0, yx = 0.0, yy = 0.0;
@@ -110,9 +110,24 @@ inline void solve3(const double (&a)[3][3], const double (&b)[3], double (&x)[3]
   }
 }
 
+/// Adds what a node answers to the equations of the motion (vx, vy, spin) of its body.
+inline void add_answer(const Answer& m, const BodyNode& node, double (&a)[3][3], double (&b)[3]) {
+  const Pair whole = m.of(Pair(node.free[0], node.free[1]));
+  const Pair turn = m.of(Pair(-node.arm[1], node.arm[0]));
+  const double left = node.arm[0] * m.yx - node.arm[1] * m.xx;
+  const double up = node.arm[0] * m.yy - node.arm[1] * m.xy;
+  const double rows[3][3] = {
+      {m.xx, m.xy, turn[0]}, {m.yx, m.yy, turn[1]}, {left, up, cross(node.arm, turn)}};
+  const double right[3] = {whole[0], whole[1], cross(node.arm, whole)};
+  for (int i = 0; i < 3; ++i) {
+    b[i] += right[i];
+    for (int j = 0; j < 3; ++j) a[i][j] += rows[i][j];
+  }
+}
+
 /// The impulses between a body and the soil at its nodes, and its velocity with them: that velocity
 /// tells how the soil meets it, and the impulses, linear in it, what it is; in turn until the
-/// meetings stay.
+/// meetings stay (a semi-smooth Newton method).
 inline void settle_nodes(const BodiesView& all, int body) {
   HeldBody& held = all.held[body];
   const double mass = all.mass[body], inertia = all.inertia[body], friction = all.friction[body];
@@ -138,20 +153,10 @@ inline void settle_nodes(const BodiesView& all, int body) {
       node.meeting = meeting;
       const Answer m = answer_of(node, off, friction);
       set(node.taken, -m.of(off));
-      const Pair taken(node.taken[0], node.taken[1]),
-          whole = m.of(Pair(node.free[0], node.free[1]));
+      const Pair taken(node.taken[0], node.taken[1]);
       for (int c = 0; c < 2; ++c) held.taken[c] += taken[c];
       held.taken_moment += cross(node.arm, taken);
-      const Pair turn = m.of(Pair(-node.arm[1], node.arm[0]));
-      const double left = node.arm[0] * m.yx - node.arm[1] * m.xx;
-      const double up = node.arm[0] * m.yy - node.arm[1] * m.xy;
-      const double rows[3][3] = {
-          {m.xx, m.xy, turn[0]}, {m.yx, m.yy, turn[1]}, {left, up, cross(node.arm, turn)}};
-      const double right[3] = {whole[0], whole[1], cross(node.arm, whole)};
-      for (int i = 0; i < 3; ++i) {
-        b[i] += right[i];
-        for (int j = 0; j < 3; ++j) a[i][j] += rows[i][j];
-      }
+      add_answer(m, node, a, b);
     }
     if (same) break;
     solve3(a, b, now);

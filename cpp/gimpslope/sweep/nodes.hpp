@@ -1,4 +1,4 @@
-// The two passes over the active nodes of a USF step.
+// The passes over the active nodes of a step: before their forces are known, and after.
 #pragma once
 
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "../view.hpp"
 #include "../wall.hpp"
 #include "accounts.hpp"
+#include "loops.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -44,25 +45,34 @@ inline Pair velocity_of(const double* momentum) {
   return inverse * pair(momentum + 2);
 }
 
+/// The velocity that walls leave a node, by its last motion.
+inline Pair within_walls(const GridView& g, int column, int row, int node, Pair v) {
+  const double* moved = g.update + 4 * node;
+  for_each_wall(g, column, row, v,
+                [&](Side side, double outward, double& normal, double& tangential) {
+                  const int axis = side == bottom || side == top;
+                  constrain(g.kind[side], outward, moved[axis] == 0.0, moved[1 - axis] == 0.0,
+                            normal, tangential);
+                });
+  return v;
+}
+
+inline void show_velocity(const GridView& g, int node, const Pair& v) {
+  quad(g.velocity + 4 * node) = Quad{v[0], v[0], v[1], v[1]};
+}
+
 /// Velocity of the nodes of a row within the walls; begins the row's ledger where one is kept.
 inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
   if (ledger != nullptr) *ledger = {};
   const auto set = [&](int node, const Pair& v) {
-    quad(g.velocity + 4 * node) = Quad{v[0], v[0], v[1], v[1]};
+    show_velocity(g, node, v);
     if (g.cells != nullptr) quad(g.cells + 4 * node) = Quad{};
   };
   for_each_node(
       g, row, [&](int node) { set(node, velocity_of(g.momentum + 4 * node)); },
       [&](int node, int column) {
         const Pair raw = velocity_of(g.momentum + 4 * node);
-        Pair v = raw;
-        const double* moved = g.update + 4 * node;  // in the step before
-        for_each_wall(g, column, row, v,
-                      [&](Side side, double outward, double& normal, double& tangential) {
-                        const int axis = side == bottom || side == top;
-                        constrain(g.kind[side], outward, moved[axis] == 0.0, moved[1 - axis] == 0.0,
-                                  normal, tangential);
-                      });
+        const Pair v = within_walls(g, column, row, node, raw);
         if (ledger != nullptr) {
           const double half_mass = 0.5 * g.momentum[4 * node];
           for (int c = 0; c < 2; ++c)
@@ -94,10 +104,14 @@ inline NodeStep forces_on(const GridView& g, int node, const StepInput& step) {
   return s;
 }
 
+/// What is left of a step at the nodes for a scheme that strains afterwards: their new velocity is
+/// shown, or their forces are kept.
+enum class Afterwards { none, shown, forces_kept };
+
 /// Momentum of the nodes of a row (paper eq. 13) with the walls' reactions, and what a point takes
 /// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass, momentum and forces,
 /// and adds to the row's ledger where one is kept.
-template <bool kLedger>
+template <bool kLedger, Afterwards kAfterwards>
 void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
   const auto advance = [&](NodeStep& s) {
     s.after = s.raw + step.dt * s.inverse_mass * s.total();
@@ -106,7 +120,8 @@ void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* led
     const Pair moved = step.dt * s.after, gained = s.after - (1.0 - step.alpha) * s.raw;
     quad(g.update + 4 * node) = Quad{moved[0], moved[1], gained[0], gained[1]};
     quad(g.momentum + 4 * node) = Quad{};
-    quad(g.force + 4 * node) = Quad{};
+    if constexpr (kAfterwards != Afterwards::forces_kept) quad(g.force + 4 * node) = Quad{};
+    if constexpr (kAfterwards == Afterwards::shown) show_velocity(g, node, s.after);
     if (g.body != nullptr) quad(g.body + 4 * node) = Quad{};
     if (g.soil != nullptr) quad(g.soil + 4 * node) = Quad{};
   };
@@ -115,7 +130,7 @@ void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* led
       [&](int node) {
         NodeStep s = forces_on(g, node, step);
         advance(s);
-        if constexpr (kLedger) add_node(s, step.dt, *ledger);
+        if constexpr (kLedger) add_node(s, step.dt, *ledger, kAfterwards != Afterwards::none);
         set(node, s);
       },
       [&](int node, int column) {
@@ -127,13 +142,32 @@ void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* led
                       });
         if (s.mass == 0.0) s.after[0] = s.after[1] = kNoMotion;
         if constexpr (kLedger) {
-          add_node(s, step.dt, *ledger);
+          add_node(s, step.dt, *ledger, kAfterwards != Afterwards::none);
           for (int c = 0; c < 2; ++c)
             add_wall(g, column, row, c, s.before[c] == 0.0 || s.after[c] == 0.0,
                      taken_by_walls(s, step.dt, c), *ledger);
         }
         set(node, s);
       });
+}
+
+/// All rows of nodes at the start of a step, each with its ledger.
+template <class Real>
+void start_rows(const View<Real>& view, int thread) {
+  for_each_row(view, thread, [&](int row) {
+    start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
+  });
+}
+
+template <Afterwards kAfterwards, class Real>
+void finish_rows(const View<Real>& view, const StepInput& input, int thread) {
+  for_each_row(view, thread, [&](int row) {
+    if (view.ledger != nullptr) {
+      finish_nodes<true, kAfterwards>(view.grid, row, input, view.ledger + row);
+    } else {
+      finish_nodes<false, kAfterwards>(view.grid, row, input, nullptr);
+    }
+  });
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

@@ -57,9 +57,9 @@ class NodeSums {
 };
 
 /// Mass and momentum at the nodes (paper eq. 18-19), from weights at the points' present places.
-template <class Shape, Need kNeed, class Real>
+template <class Shape, class Real>
 void scatter_momentum(const View<Real>& view, int begin, int n,
-                      const Weights<Shape, kNeed>& weights) {
+                      const Weights<Shape, Need::values>& weights) {
   const Real* vx = view.points.vx + begin;
   const Real* vy = view.points.vy + begin;
   const Real* mass = view.points.mass + begin;

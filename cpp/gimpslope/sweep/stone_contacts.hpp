@@ -32,6 +32,19 @@ struct Crowd {
     }
     return best;
   }
+  /// The point nearest to a place, -1 where there is none.
+  int nearest_to(const Pair& place) const {
+    int nearest = -1;
+    double least = 0.0;
+    for (int k = 0; k < count; ++k) {
+      const double dx = place[0] - x[k], dy = place[1] - y[k], square = dx * dx + dy * dy;
+      if (nearest >= 0 && square >= least) continue;
+      nearest = k;
+      least = square;
+    }
+    return nearest;
+  }
+
   Pair at(int k) const { return {x[k], y[k]}; }
 };
 
@@ -89,19 +102,15 @@ inline void meet(const View<double>& view, const StepInput& input, int body, int
   gather_crowd(view, body, opposite, all.radius[other] + reach, a);
   gather_crowd(view, other, centre, all.radius[body] + reach, b);
   for (int k = 0; k < a.count; ++k) {
-    int nearest = -1;
-    double least = 0.0;
-    for (int i = 0; i < b.count; ++i) {
-      const double dx = a.x[k] - b.x[i], dy = a.y[k] - b.y[i], square = dx * dx + dy * dy;
-      if (nearest >= 0 && square >= least) continue;
-      nearest = i;
-      least = square;
-    }
+    const int nearest = b.nearest_to(a.at(k));
     if (nearest < 0) continue;
     const double both = a.half[k] + b.half[nearest];
+    const double least = (a.at(k) - b.at(nearest)).square().sum();
     if (least > (both + seen) * (both + seen) + both * both) continue;
     const Pair between = a.at(k) - b.at(nearest), place = 0.5 * (a.at(k) + b.at(nearest));
-    Pair line = shortest_between(a, b, place, reach, between);
+    // Wide enough for these two, however far apart the points of a stone are.
+    const double around = reach * reach > least ? reach : std::sqrt(least);
+    Pair line = shortest_between(a, b, place, around, between);
     if (line.square().sum() == 0.0) line = Pair(centre[0] - opposite[0], centre[1] - opposite[1]);
     const double length = std::hypot(line[0], line[1]);
     if (length == 0.0) continue;

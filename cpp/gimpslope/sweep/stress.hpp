@@ -141,6 +141,8 @@ void deform_block(const View<Real>& view, const StepInput& input, const Block& b
   apply_law(view, block, law, strains);
   if (view.ledger != nullptr)
     add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);
+  if (view.ledger != nullptr && input.stress_last)
+    add_work_of_old_forces(view, begin, n, strains, before, ledger);
 }
 
 template <class Shape, bool kOwnDomain, class Real>

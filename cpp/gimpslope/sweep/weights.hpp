@@ -2,6 +2,7 @@
 #pragma once
 
 #include "../view.hpp"
+#include "../wall.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -45,6 +46,10 @@ struct Weights<Shape, Need::gradients> {
   }
 };
 
+/// A shape function that is another one beside walls.
+template <class Shape>
+concept ChangesAtWalls = requires { &Shape::at_walls; };
+
 /// Shape functions of the n points from `begin` on. With kOwnDomain each point has its own
 /// half-lengths, otherwise all share one.
 template <class Shape, bool kOwnDomain, Need kNeed, class Real>
@@ -55,9 +60,10 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
   const Real* lx = kOwnDomain ? view.points.half_length[0] + begin : nullptr;
   const Real* ly = kOwnDomain ? view.points.half_length[1] + begin : nullptr;
   const double per_cell = 1.0 / grid.cell;
-  const std::int32_t* home = PointsView<Real>::relative ? view.points.home + begin : nullptr;
-  const double left = PointsView<Real>::relative ? 0.0 : grid.left;
-  const double bottom = PointsView<Real>::relative ? 0.0 : grid.bottom;
+  constexpr bool relative = PointsView<Real>::relative;
+  const std::int32_t* home = relative ? view.points.home + begin : nullptr;
+  const double left = relative ? 0.0 : grid.left;
+  const double bottom = relative ? 0.0 : grid.bottom;
   const double stride = grid.stride;
   const double common = Shape::widest > 0.0 ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::widest > 0.0 ? 1.0 / common : 0.0;
@@ -75,12 +81,22 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
     const double y = (py[k] - bottom) * per_cell - 0.5 * width_y - Shape::behind;
     const double column = static_cast<int>(x), row = static_cast<int>(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
-    if constexpr (PointsView<Real>::relative) out.first[k] += home[k];
+    if constexpr (relative) out.first[k] += home[k];
 
     double w[Shape::nodes], d[Shape::nodes];
     Shape::evaluate(x - column, width_x, inverse_x, w, d);
+    if constexpr (ChangesAtWalls<Shape>) {
+      const int i = static_cast<int>(column) + (relative ? home[k] % grid.stride : 0);
+      Shape::at_walls(x - column, i == grid.wall[Side::left] - 1,
+                      i + Shape::nodes - 2 == grid.wall[Side::right], w, d);
+    }
     for (int i = 0; i < Shape::nodes; ++i) out.set_x(i, k, w[i], d[i]);
     Shape::evaluate(y - row, width_y, inverse_y, w, d);
+    if constexpr (ChangesAtWalls<Shape>) {
+      const int j = static_cast<int>(row) + (relative ? home[k] / grid.stride : 0);
+      Shape::at_walls(y - row, j == grid.wall[Side::bottom] - 1,
+                      j + Shape::nodes - 2 == grid.wall[Side::top], w, d);
+    }
     for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);
   }
 }

@@ -3,6 +3,7 @@
 from .bands import LEAST_BAND, Bands, plastic_bands
 from .displacement import max_displacement
 from .fastest import FastestPoint, fastest_of, fastest_point
+from .peak import SmoothPeak, smooth_peak
 from .percentile import mass_percentile
 from .phases import REST_SHARE, Phases, phases_of
 from .plastic import PLASTIC_THRESHOLD, PlasticShare, plastic_share, plastic_zone
@@ -21,6 +22,7 @@ __all__ = [
     "Phases",
     "PlasticShare",
     "RigidMotion",
+    "SmoothPeak",
     "StoneMotion",
     "Surface",
     "fastest_of",
@@ -34,6 +36,7 @@ __all__ = [
     "plastic_zone",
     "rigid_motion",
     "run_out",
+    "smooth_peak",
     "stone_motion",
     "stone_outlines",
     "surface_of",

@@ -11,9 +11,9 @@ from typing import TextIO
 import gimpslope as gs
 
 from ..studies.parallel import RunFailed
-from . import bench, converge, export, info, reproduce, run, stability, verify
+from . import bench, converge, export, info, plan, reproduce, run, stability, verify
 
-_COMMANDS = (run, reproduce, export, verify, converge, stability, bench, info)
+_COMMANDS = (run, plan, reproduce, export, verify, converge, stability, bench, info)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

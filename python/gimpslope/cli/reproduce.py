@@ -6,10 +6,23 @@ import argparse
 import os
 from collections.abc import Callable
 
-from ..studies import reference, reproduce
+from ..planning import Target
+from ..studies import reference, reproduce, within
 from .commands import Commands
 from .options import add_readings, add_stone_model
 from .paths import make_directory
+
+_BUDGET = 60.0  # s
+_NOT_WITH_ERROR = {
+    "cell": reproduce.CELL,
+    "stone_model": None,
+    "stone_modulus": None,
+    "duration": 10.0,
+    "time_step": None,
+    "convergence": None,
+    "cells": None,
+}
+"""Options that a plan chooses or does not have, with their defaults."""
 
 
 def add(commands: Commands) -> None:
@@ -64,6 +77,19 @@ def add(commands: Commands) -> None:
         f"(default: {' '.join(map(str, reproduce.CELLS))})",
     )
     parser.add_argument(
+        "--error",
+        type=float,
+        metavar="E",
+        help="in place of all that, plan each slope for its figures to that error, a share, and "
+        "run it so: of the first reading and seed",
+    )
+    parser.add_argument(
+        "--budget",
+        type=float,
+        metavar="S",
+        help=f"of --error, wall time in all, s (default: {_BUDGET:g})",
+    )
+    parser.add_argument(
         "--jobs", type=int, metavar="N", help="runs at a time (default: as many as processors)"
     )
     parser.add_argument("--output", default="study", metavar="DIR", help="(default: %(default)s)")
@@ -79,6 +105,10 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
         raise ValueError(f"--jobs must be a whole number >= 1, got {jobs}")
     if options.cells is not None and options.convergence is None:
         raise ValueError(f"--cells must be given with --convergence, got {options.cells} alone")
+    if options.error is not None:
+        return _within(options, jobs)
+    if options.budget is not None:
+        raise ValueError(f"--budget must be given with --error, got {options.budget} alone")
     none_named = options.convergence == []
     plan = reproduce.plan(
         options.output,
@@ -103,6 +133,32 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
             shown = ", ".join(f"{verdict}: {count}" for verdict, count in verdicts.items())
             print(f"claims of the paper, reading {reading}: {shown}")
         print(f"runs, figures and summary (summary.md, summary.html): {options.output}{os.sep}")
+        return 0
+
+    return command
+
+
+def _within(options: argparse.Namespace, jobs: int) -> Callable[[], int]:
+    for name, default in _NOT_WITH_ERROR.items():
+        if (given := getattr(options, name)) != default:
+            option = "--" + name.replace("_", "-")
+            raise ValueError(f"{option} must be left out with --error, got {given!r}")
+    budget = _BUDGET if options.budget is None else options.budget
+    target = Target(options.error, within.QUANTITIES, budget)
+    make_directory("--output", options.output)
+
+    def command() -> int:
+        found = within.study(
+            target,
+            options.output,
+            reading=options.reading[0],
+            seed=options.seed[0],
+            jobs=jobs,
+            overwrite=options.overwrite,
+        )
+        within.write(found, options.output)
+        print(within.markdown(found))
+        print(f"runs and table (within.md): {options.output}{os.sep}")
         return 0
 
     return command

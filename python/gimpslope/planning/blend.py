@@ -1,0 +1,50 @@
+"""The velocity blend on grids of any cell: as the viscosity that it acts as."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ..materials import Deformable
+from ..method import Method
+from ..scene import Scene
+
+_FULLEST = 0.9
+
+
+def held(scene: Scene, method: Method) -> Method:
+    """The method with the viscosity that its blend has in a scene and at its step.
+
+    A share of PIC a step, or a relaxation time, is another viscosity on every grid, and there would
+    be no limit of the same problem.
+    """
+    kind, value = method.blend
+    if kind == "viscosity":
+        return method
+    share = value if kind == "alpha" else time_step(scene, method) / value
+    viscosity = share * _moment(scene, method) / time_step(scene, method)
+    return replace(method, alpha=None, relaxation_time=None, viscosity=viscosity)
+
+
+def within_limits(scene: Scene, method: Method) -> Method:
+    """The method with a Courant number so small that its viscosity needs no more than 0.9 of PIC,
+    for more than all of it cannot be had; it matters on very fine grids."""
+    kind, number = method.step
+    assert kind == "courant" and method.viscosity is not None
+    share = method.viscosity * time_step(scene, method) / _moment(scene, method)
+    return method if share <= _FULLEST else replace(method, courant=number * _FULLEST / share)
+
+
+def time_step(scene: Scene, method: Method) -> float:
+    """The step at rest, s."""
+    kind, value = method.step
+    if kind == "fixed":
+        return value
+    fastest = max(m.wave_speed for m in scene.materials if isinstance(m, Deformable))
+    return value * scene.cell / fastest
+
+
+def _moment(scene: Scene, method: Method) -> float:
+    """Second moment of the shape function, m2, by which a blend of alpha a step is a viscosity of
+    alpha times it over the step (see `Method`)."""
+    half_length = scene.spacing / 2 if method.has_domains else 0.0
+    return scene.cell**2 / 6 + half_length**2 / 3

@@ -1,0 +1,85 @@
+"""What makes a run cheaper and hardly another: tried on the coarsest grid, and kept where it is so.
+
+An error of the time step shrinks as the step does, and this as the cell: of what a saving changes
+on the coarsest grid, a quarter is left on the third, which is the coarsest that a result may be of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from ..setup import Setup
+from ..stages import Gravity
+from .pilot import Pilot, change, fly
+from .target import Target
+
+_SHARE = 0.2
+"""Of the error asked for, what all savings together may cost."""
+
+_ON_THE_THIRD = 1 / 4
+_COURANT = 0.8
+
+
+class Saving(NamedTuple):
+    """A change of a setup and what it is called."""
+
+    title: str
+    apply: Callable[[Setup], Setup]
+
+
+def _gravity_at_once(setup: Setup) -> Setup:
+    return replace(setup, stages=replace(setup.stages, gravity=Gravity(ramp=0.0)))
+
+
+def _long_steps(setup: Setup) -> Setup:
+    return replace(setup, method=replace(setup.method, courant=_COURANT))
+
+
+SAVINGS = (
+    Saving("gravity is applied at once", _gravity_at_once),
+    Saving(f"the Courant number is {_COURANT}", _long_steps),
+)
+
+
+@dataclass(frozen=True)
+class Saved:
+    """The setup with the savings that are worth it.
+
+    Attributes
+    ----------
+    setup : with them
+    pilot : its run on the coarsest grid
+    changes : share by which they change each quantity on the third grid
+    reasons : a sentence each
+    seconds : wall time of all that was tried, s
+    """
+
+    setup: Setup
+    pilot: Pilot
+    changes: dict[str, float]
+    reasons: tuple[str, ...]
+    seconds: float
+
+
+def save(setup: Setup, target: Target, directory: Path) -> Saved:
+    """Try each saving on top of those before."""
+    names = target.quantities
+    plain = fly(setup, directory / "plain.h5", names)
+    saved = Saved(setup, plain, dict.fromkeys(names, 0.0), (), plain.seconds)
+    for number, saving in enumerate(SAVINGS):
+        changed = saving.apply(saved.setup)
+        pilot = fly(changed, directory / f"saving_{number}.h5", names)
+        found = change(pilot, plain)
+        changes = {name: _ON_THE_THIRD * size for name, size in found.items()}
+        worst = max(changes.values())
+        if worst <= _SHARE * target.error:
+            reason = f"{saving.title}: that changes no quantity by more than {worst:.1g} of itself"
+            saved = Saved(changed, pilot, changes, (*saved.reasons, reason), saved.seconds)
+        else:
+            reason = f"not kept: {saving.title}, which changes a quantity by {worst:.1g} of itself"
+            saved = replace(saved, reasons=(*saved.reasons, reason))
+        saved = replace(saved, seconds=saved.seconds + pilot.seconds)
+    return saved

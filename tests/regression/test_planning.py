@@ -1,0 +1,88 @@
+"""Plans hold what they promise: their answers beside those of a grid at least twice as fine, and
+their time beside the clock.
+
+Stones here are few and large, with gaps that coarse grids tell apart: of the study's own stones, no
+two grids that fit into minutes do.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gimpslope as gs
+from gimpslope.planning import Estimate, search
+from gimpslope.planning.pilot import fly
+from gimpslope.planning.problem import pose
+from gimpslope.studies import reference
+
+pytestmark = pytest.mark.slow
+
+PEAK = ("peak_kinetic_energy", "time_of_peak", "speed_at_peak")
+METHOD = reference.method(ledger=False)
+SLOPE = gs.Outline.slope()
+STONES = {
+    "soil": (),
+    "round": gs.stones.rounds(SLOPE, 1.6, count=5, gap=0.8, seed=1),
+    "oval": gs.stones.ellipses(SLOPE, axes=(2.2, 1.16), count=5, gap=0.8, seed=1),
+}
+FINEST = 0.05  # m
+
+
+def scene(kind: str) -> gs.Scene:
+    walls = reference.READINGS["identified"].walls
+    stones = STONES[kind]
+    rock = reference.rock() if stones else None
+    return gs.Scene(SLOPE, reference.soil(), stones=stones, stone=rock, cell=FINEST, walls=walls)
+
+
+@pytest.fixture(scope="module")
+def trusted(tmp_path_factory: pytest.TempPathFactory) -> dict[str, dict[str, float]]:
+    """The limits of grids of 0.2, 0.1 and 0.05 m, by the steps that a run takes without a plan."""
+    path = tmp_path_factory.mktemp("trusted") / "run.h5"
+    found = {}
+    for kind in STONES:
+        problem = pose(scene(kind), 0.05, METHOD, gs.Stages(), until_rest=False)
+        levels = round(np.log2(problem.setup.scene.cell / FINEST))
+        grids = [fly(problem.on(level), path, PEAK) for level in range(levels - 2, levels + 1)]
+        cells = tuple(grid.cell for grid in grids)
+        found[kind] = {
+            name: Estimate(name, cells, tuple(grid.values[name] for grid in grids)).value
+            for name in PEAK
+        }
+    return found
+
+
+def test_true_errors_are_below_those_asked_for(
+    trusted: dict[str, dict[str, float]], tmp_path: Path
+) -> None:
+    kept, off = 0, []
+    for kind, limits in trusted.items():
+        for error in (0.25, 0.2, 0.1, 0.05):
+            plan = gs.plan(scene(kind), error, PEAK, method=METHOD, budget=1000, progress=False)
+            if not plan.holds or plan.setup.scene.cell < 1.9 * FINEST:
+                continue
+            answer = plan.run(tmp_path / "run.h5", overwrite=True)
+            for name, true in limits.items():
+                value = answer.estimates[name].value
+                kept += abs(value / true - 1) <= error
+                off += [] if abs(value / true - 1) <= error else [(kind, error, name, value, true)]
+    assert kept >= 9
+    assert kept >= 9 * len(off), off
+
+
+def test_time_is_predicted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A run of seconds, after pilots that are cheap; for a quiet machine."""
+    monkeypatch.setattr(search, "_PILOT_SHARE", 0.0)
+    plan = gs.plan(scene("soil"), 0.1, PEAK[:1], method=METHOD, progress=False)
+    assert plan.levels == 1
+    answer = plan.run(tmp_path / "run.h5")
+    assert plan.seconds == pytest.approx(answer.seconds, rel=0.3)
+
+
+def test_the_studys_own_stones_are_not_promised() -> None:
+    plan = gs.plan(reference.slope("round"), 0.05, PEAK[:1], method=METHOD, budget=20)
+    assert not plan.holds
+    assert any("closer than two cells" in reason for reason in plan.reasons)

@@ -1,0 +1,371 @@
+"""A plan finds the grid for an error, says what it knows of it, and promises no more."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import gimpslope as gs
+from gimpslope import cli, planning
+from gimpslope.analysis import smooth_peak
+from gimpslope.energy import Energy
+from gimpslope.planning import Estimate, blend, grids, stones
+from gimpslope.planning.cost import seconds
+from gimpslope.planning.pilot import Pilot
+from gimpslope.planning.tail import NO_TAIL, tail
+from gimpslope.studies import reference, within
+
+CELLS = (0.8, 0.4, 0.2)
+PEAK = ("peak_kinetic_energy", "time_of_peak")
+
+
+def estimate(*raw: float, fixed: float = 0.0) -> Estimate:
+    return Estimate("max_displacement_total", CELLS[: len(raw)], raw, fixed)
+
+
+@pytest.mark.parametrize("order", [0.7, 1.0, 1.8])
+def test_a_power_of_the_cell_is_extrapolated_and_predicted(order: float) -> None:
+    found = estimate(*(5.0 - 2.0 * cell**order for cell in CELLS), fixed=0.01)
+    assert found.behaviour == "converges"
+    assert found.value == pytest.approx(5.0)
+    off = 2.0 * 0.2**order / 5.0
+    assert found.error == pytest.approx(1.25 * off + 0.01)
+    assert found.raw_error == pytest.approx(2.25 * off + 0.01)
+    assert found.predicted(2) == pytest.approx(1.25 * off / 4**order + 0.01)
+    assert found.at_worst(2) == pytest.approx(1.25 * off / 2 + 0.01)
+    levels = found.levels(0.02)
+    assert levels is not None and found.predicted(levels) <= 0.02 < found.predicted(levels - 1)
+    assert found.levels(0.009) is None  # finer grids do not help what is fixed
+
+
+@pytest.mark.parametrize(
+    ("raw", "behaviour", "spread"),
+    [
+        ((9.0, 10.0, 9.6), "oscillates", 0.4),
+        ((9.0, 10.0, 10.01), "order not settled", 0.25),
+        ((9.0, 10.0, 9.99), "oscillates", 0.25),
+        ((9.0, 9.5, 10.5), "diverges", 1.0),
+        ((9.0, 10.0), "too few grids", 1.0),
+    ],
+)
+def test_where_no_order_is_settled_the_finest_stands(
+    raw: tuple[float, ...], behaviour: str, spread: float
+) -> None:
+    found = estimate(*raw)
+    assert found.behaviour == behaviour
+    assert found.value == raw[-1]
+    assert found.error == pytest.approx(3 * spread / raw[-1])
+    assert (found.levels(0.5 * found.error) is None) == (behaviour == "diverges")
+
+
+@pytest.mark.parametrize("raw", [(9.0, 10.0, math.nan), (0.0, 0.0, 0.0)])
+def test_nothing_is_said_of_what_is_not_there(raw: tuple[float, ...]) -> None:
+    found = estimate(*raw)
+    assert math.isinf(found.error) and found.levels(0.5) is None
+    assert found.shown == "not reached" and found.stands.endswith("finest grid")
+
+
+def energy(kinetic: np.ndarray, time: np.ndarray) -> Energy:
+    flat = np.zeros_like(time)
+    return Energy(Path("made"), time, flat.astype(int), kinetic, flat, flat, 1.0 + time)
+
+
+def test_peak_through_the_noise_of_its_rows() -> None:
+    time = np.arange(0.0, 3.0, 0.005)
+    rough = 1e-3 * np.sin(2 * np.pi * time / 0.02)
+    found = smooth_peak(energy(1e5 * (1 - (time - 1.603) ** 2 + rough), time))
+    assert found is not None
+    assert found.time == pytest.approx(1.603, abs=1e-3)
+    assert found.kinetic == pytest.approx(1e5, rel=1e-4)
+    assert found.max_speed == pytest.approx(2.603, abs=1e-3)
+
+
+def test_no_peak_while_energy_grows() -> None:
+    time = np.arange(0.0, 1.0, 0.005)
+    assert smooth_peak(energy(time**2, time)) is None
+
+
+@pytest.mark.parametrize("given", [{"alpha": 0.02}, {"relaxation_time": 0.03}, {"viscosity": 0.1}])
+def test_blend_is_held_as_the_viscosity_it_has(given: dict[str, float]) -> None:
+    scene = reference.slope(cell=0.8)
+    method = gs.Method(**given)
+    held = blend.held(scene, method)
+    assert held.blend[0] == "viscosity"
+    share = gs.Solver.of(scene, held).alpha
+    assert share == pytest.approx(gs.Solver.of(scene, method).alpha, rel=1e-9)
+
+
+def test_a_blend_beyond_all_of_pic_takes_shorter_steps() -> None:
+    scene = reference.slope(cell=0.8)
+    method = gs.Method(viscosity=100.0, courant=0.4)
+    with pytest.raises(ValueError, match="viscosity"):
+        gs.Solver.of(scene, method)
+    assert gs.Solver.of(scene, blend.within_limits(scene, method)).alpha == pytest.approx(0.9)
+    gentle = replace(method, viscosity=0.5)
+    assert blend.within_limits(scene, gentle) is gentle
+
+
+def with_stones(gap: float, rock: gs.Material, cell: float = 0.2) -> gs.Scene:
+    pair = [gs.Ellipse((2.0, 2.0), (1.0, 1.0)), gs.Ellipse((3.0 + gap, 2.0), (1.0, 1.0))]
+    return gs.Scene(gs.Outline.slope(), reference.soil(), stones=pair, stone=rock, cell=cell)
+
+
+@pytest.mark.parametrize(("gap", "apart"), [(0.5, True), (0.3, False)])
+def test_stones_as_a_grid_has_them(gap: float, apart: bool) -> None:
+    scene = with_stones(gap, reference.rock())
+    seen = stones.sampling(scene)
+    assert seen is not None
+    assert seen.apart == apart and seen.close == (0.0 if apart else 1.0)
+    assert seen.gap == pytest.approx(gap / 0.2)
+    points = int((scene.points.stone >= 0).sum())
+    assert seen.area == pytest.approx(points * 0.1**2 / (np.pi / 2))
+    assert stones.cell_apart(scene) == pytest.approx(gap / 2)
+
+
+def test_stiff_and_strong_stones_become_rigid() -> None:
+    scene, why = stones.made_rigid(with_stones(0.5, reference.rock()), 0.01)
+    assert scene.stone == gs.Rigid(2400) and "rigid" in why
+    assert stones.made_rigid(scene, 0.01) == (scene, "")
+
+
+@pytest.mark.parametrize("changed", [{"young": 0.3e9}, {"cohesion": 50e3}])
+def test_soft_or_weak_stones_stay(changed: dict[str, float]) -> None:
+    scene = with_stones(0.5, replace(reference.rock(), **changed))
+    kept, why = stones.made_rigid(scene, 0.001)
+    assert kept == scene and "stay deformable" in why
+
+
+def test_the_coarsest_grid_bears_outline_and_stones() -> None:
+    assert grids.coarsest(reference.slope(cell=0.1)).cell == pytest.approx(0.8)
+    assert grids.coarsest(reference.slope(cell=2.0)).cell == 2.0
+    assert grids.coarsest(with_stones(0.5, reference.rock(), cell=0.1)).cell == pytest.approx(0.4)
+    fine = reference.slope(cell=0.1)
+    assert grids.n_points(fine, 0) == pytest.approx(fine.n_points, rel=0.01)
+    assert grids.finer(fine, 2).cell == pytest.approx(0.025)
+
+
+def pilot(run: gs.Run, **given: object) -> Pilot:
+    made = {
+        "cell": 0.8,
+        "points": 400,
+        "steps": 1000,
+        "loading_steps": 100,
+        "seconds": 1.0,
+        "reached": 10.0,
+        "values": {},
+        "history": {},
+        "run": run,
+    }
+    return Pilot(**(made | given))  # type: ignore[arg-type]
+
+
+def test_time_follows_from_steps_and_points(tmp_path: Path) -> None:
+    none = gs.Run.__new__(gs.Run)
+    taken = [
+        pilot(none, points=n, steps=steps, seconds=steps * (1e-4 + 1e-6 * n))
+        for n, steps in ((400, 1000), (1600, 2000))
+    ]
+    assert seconds(taken, 6400, 1) == pytest.approx(4000 * (1e-4 + 6.4e-3))
+    whole, loading = 2000, 100
+    half = loading + 0.5 * (whole - loading)
+    assert seconds(taken, 1600, 0, 0.5) == pytest.approx(half * (1e-4 + 1.6e-3))
+
+
+class Peaked:
+    """A run of which only the time of the peak is asked."""
+
+    def __init__(self, time: float) -> None:
+        self.energy = type("E", (), {"peak": type("P", (), {"time": time})})
+
+
+@pytest.mark.parametrize(("error", "end"), [(0.2, 3.0), (0.05, 4.0), (0.001, math.inf)])
+def test_a_slide_ends_when_coarse_grids_agree_on_the_rest(error: float, end: float) -> None:
+    def creeping(share: float) -> Pilot:
+        history = {time: {"run_out": 5.0 / (1 + share / 2**time)} for time in (2.0, 3.0, 4.0, 5.0)}
+        run = Peaked(1.6)
+        return pilot(run, values={"run_out": 5.0}, history=history)  # type: ignore[arg-type]
+
+    found = tail(creeping(0.16), creeping(0.12), error)
+    assert found.time == end
+    if found is not NO_TAIL:
+        assert found.extend({"run_out": 4.0, "time_of_peak": 1.6}) == {
+            "run_out": pytest.approx(4.0 * (1 + 0.12 / 2**end)),
+            "time_of_peak": 1.6,
+        }
+        assert found.error["run_out"] == pytest.approx(0.06 / 2**end)
+
+
+@pytest.fixture(scope="module")
+def small() -> gs.Scene:
+    return gs.Scene(gs.Outline.slope(height=4.5, crest=1), reference.soil(), cell=0.4)
+
+
+METHOD = gs.Method(viscosity=0.2)
+
+
+@pytest.fixture(scope="module")
+def plan(small: gs.Scene) -> gs.Plan:
+    return gs.plan(
+        small,
+        0.5,
+        ("peak_kinetic_energy", "run_out"),
+        method=METHOD,
+        stages=gs.Stages(slide=gs.Slide(4.0)),
+        budget=1000,
+        progress=False,
+    )
+
+
+def test_plan_of_a_small_slope(plan: gs.Plan, small: gs.Scene, tmp_path: Path) -> None:
+    assert plan.holds
+    assert plan.setup.scene == replace(small, cell=plan.setup.scene.cell)
+    assert plan.setup.method.viscosity == METHOD.viscosity
+    assert all(one.predicted(plan.levels) <= 0.5 for one in plan.estimates.values())
+    answer = plan.run(tmp_path / "small.h5")
+    assert answer.run.setup == plan.setup == gs.open(tmp_path / "small.h5").setup
+    for name, one in answer.estimates.items():
+        raw = answer.run.run_out() if name == "run_out" else answer.run.energy.peak.value
+        assert one.raw[-1] == pytest.approx(raw, rel=0.05)
+        assert one.cells[-1] == plan.setup.scene.cell
+    assert answer.reached == all(one.error <= 0.5 for one in answer.estimates.values())
+    for text in (str(plan), str(answer)):
+        assert "peak kinetic energy" in text and "run-out of the toe" in text
+    with pytest.raises(FileExistsError, match=r"small\.h5"):
+        plan.run(tmp_path / "small.h5")
+
+
+def test_a_plan_beyond_its_budget_says_what_it_would_need(small: gs.Scene) -> None:
+    plan = gs.plan(small, 0.05, PEAK[:1], method=METHOD, budget=1e-3, progress=False)
+    assert not plan.holds and plan.levels == 0
+    assert "cannot promise 0.05" in str(plan)
+    assert any("needs a cell" in reason and "budget" in reason for reason in plan.reasons)
+
+
+def test_stones_that_share_nodes_are_not_promised() -> None:
+    near = with_stones(0.3, reference.rock(), cell=0.8)
+    plan = gs.plan(near, 0.9, PEAK[:1], method=METHOD, budget=1e-3, progress=False)
+    assert all(isinstance(one, gs.Rigid) for one in plan.setup.scene.materials[1:])
+    assert not plan.holds
+    assert any("closer than two cells" in reason for reason in plan.reasons)
+    touching = with_stones(0.0, reference.rock(), cell=0.8)
+    plan = gs.plan(touching, 0.9, PEAK[:1], method=METHOD, budget=1e-3, progress=False)
+    assert not plan.holds and any("some touch" in reason for reason in plan.reasons)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"error": 0.0}, "error must be"),
+        ({"error": 1.0}, "error must be"),
+        ({"budget": 0.0}, "budget must be"),
+        ({"quantities": ()}, "quantities must be"),
+        ({"quantities": "run_out"}, "quantities must be"),
+        ({"quantities": ("run_out", "colour")}, "quantities must be .*run_out.*got 'colour'"),
+        ({"scene": "soil"}, "scene must be"),
+        ({"method": "fast"}, "method must be"),
+        ({"stages": "all"}, "stages must be"),
+        ({"progress": "yes"}, "progress must be"),
+    ],
+)
+def test_refused(small: gs.Scene, given: dict[str, object], message: str) -> None:
+    with pytest.raises((TypeError, ValueError), match=message):
+        gs.plan(**({"scene": small} | given))  # type: ignore[arg-type]
+
+
+SCENE = """
+cell = 0.8
+[outline]
+height = 4.5
+crest = 1
+[materials.soil]
+density = 1800
+young = 30e6
+poisson = 0.33
+friction = 22
+cohesion = 1e3
+[stages.slide]
+duration = 4
+[method]
+viscosity = 0.2
+"""
+
+
+def test_command(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("small.toml").write_text(SCENE)
+    words = [
+        "plan",
+        "small.toml",
+        "--error",
+        "0.5",
+        "--budget",
+        "0.1",
+        "--quantities",
+        "time_of_peak",
+    ]
+    assert cli.main([*words, "--dry-run"]) == 0
+    shown = capsys.readouterr()
+    assert "time of the peak" in shown.out and "pilot: cell" in shown.err
+    assert not Path("small_planned.h5").exists()
+    assert cli.main([*words, "--quiet", "--output", "fine.h5"]) == 0
+    shown = capsys.readouterr()
+    assert "by the estimate" in shown.out and shown.err == ""
+    assert gs.open("fine.h5").status == "finished"
+    assert cli.main([*words, "--output", "fine.h5"]) == 2
+    assert "--output must be a new file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("plan clay", "SCENE must be one of"),
+        ("plan missing.toml", "missing.toml"),
+        ("plan missing.toml --seed 2", "--seed must be left out"),
+        ("plan soil --error 2", "error must be"),
+        ("plan soil --budget -1", "budget must be"),
+        ("plan soil --output plan.txt", "--output must be a file that ends in .h5"),
+        ("reproduce --error 0", "error must be"),
+        ("reproduce --error 0.1 --cell 0.2", "--cell must be left out with --error, got 0.2"),
+        ("reproduce --error 0.1 --convergence", "--convergence must be left out"),
+        ("reproduce --budget 60", "--budget must be given with --error"),
+    ],
+)
+def test_what_commands_refuse(
+    words: str,
+    message: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(words.split()) == 2
+    assert message in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
+
+
+def test_page_of_the_study(tmp_path: Path) -> None:
+    names = ("peak_kinetic_energy", "time_of_peak")
+    of_peak = Estimate(names[0], CELLS, (96e3, 130e3, 147e3))
+    of_time = Estimate(names[1], CELLS, (1.7, 1.6, math.nan))
+    slopes = tuple(
+        within.Slope(name, (of_peak, of_time), True, False, 400, 9000, 1.5, (1.0, 2.0), ("why",))
+        for name in reference.SLOPES
+    )
+    found = within.Study(planning.Target(0.1, names), "identified", 1, slopes, 12.0)
+    within.write(found, tmp_path)
+    page = (tmp_path / "within.md").read_text()
+    assert "| peak kinetic energy | 164 ± 21 kJ/m, 13.0 % (147) |" in page
+    assert "not reached" in page and "1.0 + 2.0" in page and "- why" in page
+    assert '"error": null' in (tmp_path / "within.json").read_text()
+
+
+def test_study_does_not_replace_runs(tmp_path: Path) -> None:
+    (tmp_path / "soil.h5").write_text("precious")
+    with pytest.raises(FileExistsError, match=r"soil\.h5"):
+        within.study(planning.Target(0.1), tmp_path)
