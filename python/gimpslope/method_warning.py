@@ -13,9 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .analysis.islands import islands
+from .analysis.holes import holes
 from .kernel import second_moment, shape_functions
 from .materials import Deformable, DruckerPrager
+from .method import Scheme
 from .summary import smallest_gap
 
 if TYPE_CHECKING:
@@ -30,6 +31,8 @@ CONE = 2.0
 """Difference, degrees, of the friction angle that a cone has in plane strain from that given."""
 NEAR_LIMIT = 0.9
 """Time step over the longest stable one from which on it is warned of."""
+NEAR_LIMIT_OF_USL = 0.3
+"""The same with USL, whose limit is 0.32 at the worst place of points two a cell and direction."""
 NEAR_STONES = 2.0
 """Gap between stones, cells, below which deformable ones share nodes."""
 
@@ -42,7 +45,7 @@ def warn_at_start(setup: Setup, solver: Solver) -> None:
     """Warn of what the settings of a run and the first step of its solver tell."""
     step = solver.time_step
     _warn(_blend(setup, step), _cone(setup.scene), _near_stones(setup.scene))
-    _warn(_step_limit(step / solver.stable_time_step))
+    _warn(_step_limit(setup.method.scheme, step / solver.stable_time_step))
 
 
 def warn_at_end(setup: Setup, solver: Solver) -> None:
@@ -97,27 +100,29 @@ def _near_stones(scene: Scene) -> Iterator[str]:
         )
 
 
-def _step_limit(share: float) -> Iterator[str]:
-    if share > NEAR_LIMIT:
+def _step_limit(scheme: Scheme, share: float) -> Iterator[str]:
+    if scheme == "usl" and share > NEAR_LIMIT_OF_USL:
+        yield (
+            f"small_masses: USL at {share:.2g} of the longest stable step of USF may be unstable "
+            'where nodes hold little mass; Method(scheme="musl") is not'
+        )
+    elif share > NEAR_LIMIT:
         yield f"step_limit: the time step is {share:.2g} of the longest stable one"
 
 
 def _fracture(setup: Setup, solver: Solver) -> Iterator[str]:
-    """Nodes that no point reaches but that others enclose are twice a point's reach wide."""
     scene, method = setup.scene, setup.method
+    position = solver.position
     half_length = solver.half_length if method.has_domains else None
     reached = shape_functions(
-        method.shape, solver.position, half_length, cell=scene.cell, origin=scene.origin
+        method.shape, position, half_length, cell=scene.cell, origin=scene.origin
     )
-    held = reached.nodes[reached.values > 0]
-    low, high = held.min(axis=0), held.max(axis=0)
-    rows = high[1] - low[1] + 1
-    numbers = np.unique((held - low) @ (rows, 1))
-    holes = len(islands(np.column_stack(np.divmod(numbers, rows))))
-    if holes:
+    apart = np.abs(reached.nodes * scene.cell + scene.origin - position[:, np.newaxis])
+    count = holes(position, float(apart[reached.values > 0].max()))
+    if count:
         yield (
-            f"fracture: points drawn apart until they share no node have left {holes} "
-            f"hole{'s' * (holes > 1)} in the soil, whatever its strength"
+            f"fracture: points drawn apart until they share no node have left {count} "
+            f"hole{'s' * (count > 1)} in the soil, whatever its strength"
         )
 
 

@@ -62,6 +62,8 @@ def told(at: Any, setup: gs.Setup, solver: gs.Solver | None = None) -> list[str]
         (two_stones(2.5, GRANITE), QUIET, []),
         (two_stones(1.0, gs.Rigid(2400)), QUIET, []),
         (scene(), replace(QUIET, courant=0.95), ["step_limit"]),
+        (scene(), replace(QUIET, scheme="usl"), ["small_masses"]),
+        (scene(), replace(QUIET, scheme="musl"), []),
     ],
 )
 def test_settings(given: gs.Scene, method: gs.Method, expected: list[str]) -> None:
@@ -85,7 +87,7 @@ def test_study_is_told_only_what_is_true_of_it() -> None:
 
 @pytest.mark.parametrize(("half_width", "expected"), [(0.3, []), (0.7, ["fracture"])])
 def test_points_drawn_apart(half_width: float, expected: list[str]) -> None:
-    """A hole in which a node has no point within 1.25 cells of it."""
+    """To the middle of the hole it is less than the reach of 1.25 cells, or more."""
     given = gs.Scene(gs.Outline(np.array([(0, 0), (6, 0), (6, 6), (0, 6)])), SOIL, cell=0.5)
     setup = gs.Setup(given, QUIET)
     solver = gs.Solver.of(given, QUIET)

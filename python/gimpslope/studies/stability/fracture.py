@@ -44,7 +44,6 @@ def run(full: bool) -> Findings:
             why="twice the reach of a point, within the step of the spacings looked at",
         )
         for shape, reach in REACH.items()
-        if shape in lost
     ]
     held = rates[FOLLOWS][spacings <= WIDEST]
     stands = [
