@@ -87,7 +87,7 @@ def test_study_is_told_only_what_is_true_of_it() -> None:
 
 @pytest.mark.parametrize(("half_width", "expected"), [(0.3, []), (0.7, ["fracture"])])
 def test_points_drawn_apart(half_width: float, expected: list[str]) -> None:
-    """To the middle of the hole it is less than the reach of 1.25 cells, or more."""
+    """A hole of one and a half cells, and one of three and a half."""
     given = gs.Scene(gs.Outline(np.array([(0, 0), (6, 0), (6, 6), (0, 6)])), SOIL, cell=0.5)
     setup = gs.Setup(given, QUIET)
     solver = gs.Solver.of(given, QUIET)

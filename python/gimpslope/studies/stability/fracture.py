@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 import gimpslope as gs
 
 from ...method import Shape
+from ...method_warning import TORN
 from ..verify.problem import Check, FloatArray
 from . import rows
 from .mode import Findings, Mode, Table
@@ -45,6 +46,14 @@ def run(full: bool) -> Findings:
         )
         for shape, reach in REACH.items()
     ]
+    fails.append(
+        Check.at_most(
+            f"ugimp: rate at a spacing of {TORN:g} cells, of the true one",
+            bound=1 / 3,
+            got=float(np.interp(TORN, spacings, rates["ugimp"])),
+            why="most nodes between two points see one of them alone: a run warns of such holes",
+        )
+    )
     held = rates[FOLLOWS][spacings <= WIDEST]
     stands = [
         Check.at_least(
