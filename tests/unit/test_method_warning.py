@@ -63,7 +63,9 @@ def told(at: Any, setup: gs.Setup, solver: gs.Solver | None = None) -> list[str]
         (two_stones(2.5, GRANITE), QUIET, []),
         (two_stones(1.0, gs.Rigid(2400)), QUIET, []),
         (scene(), replace(QUIET, courant=0.95), ["step_limit"]),
-        (scene(), replace(QUIET, scheme="usl"), ["small_masses"]),
+        (scene(), replace(QUIET, scheme="usl"), []),
+        (scene(), replace(QUIET, scheme="usl", shape="linear"), ["small_masses"]),
+        (scene(), replace(QUIET, scheme="usl", courant=0.6), ["small_masses"]),
         (scene(), replace(QUIET, scheme="musl"), []),
     ],
 )
