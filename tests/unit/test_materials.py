@@ -178,3 +178,14 @@ def test_kernel_sees_the_same_strength():
     assert core.tension_limit == pytest.approx(1e3 * math.sqrt(3))
     assert replace(SOIL, tension_cutoff=7).to_core().tension_limit == 7
     assert replace(SOIL, friction=0).to_core().tension_limit == math.inf
+
+
+def test_friction_angle_in_plane_strain():
+    """Published for 22 degrees without dilation; the outer cone has no collapse from 42.2 on."""
+    known = {"outer": 29.62, "inner": 22.62, "plane_strain_associated": 21.48, "plane_strain": 22}
+    for cone, angle in known.items():
+        of = replace(SOIL, cone=cone)
+        assert of.plane_strain_friction == pytest.approx(angle, abs=5e-3)
+    steepest = math.degrees(math.asin(3 * math.sqrt(3) / (6 + math.sqrt(3))))
+    assert replace(SOIL, cone="outer", friction=steepest - 0.01).plane_strain_friction is not None
+    assert replace(SOIL, cone="outer", friction=steepest + 0.01).plane_strain_friction is None

@@ -54,6 +54,7 @@ def told(at: Any, setup: gs.Setup, solver: gs.Solver | None = None) -> list[str]
         (scene(), QUIET, []),
         (scene(), gs.Method(alpha=0.5), ["blend"]),
         (scene(), gs.Method(viscosity=10.0), []),
+        (scene(), gs.Method(transfer="xpic"), []),
         (scene(replace(SOIL, cone="outer")), QUIET, ["cones"]),
         (scene(replace(SOIL, cone="outer", friction=45)), QUIET, ["cones"]),
         (scene(replace(SOIL, cone="inner")), QUIET, []),
@@ -62,6 +63,10 @@ def told(at: Any, setup: gs.Setup, solver: gs.Solver | None = None) -> list[str]
         (two_stones(2.5, GRANITE), QUIET, []),
         (two_stones(1.0, gs.Rigid(2400)), QUIET, []),
         (scene(), replace(QUIET, courant=0.95), ["step_limit"]),
+        (scene(), replace(QUIET, scheme="usl"), []),
+        (scene(), replace(QUIET, scheme="usl", shape="linear"), ["small_masses"]),
+        (scene(), replace(QUIET, scheme="usl", courant=0.6), ["small_masses"]),
+        (scene(), replace(QUIET, scheme="musl"), []),
     ],
 )
 def test_settings(given: gs.Scene, method: gs.Method, expected: list[str]) -> None:
@@ -85,7 +90,7 @@ def test_study_is_told_only_what_is_true_of_it() -> None:
 
 @pytest.mark.parametrize(("half_width", "expected"), [(0.3, []), (0.7, ["fracture"])])
 def test_points_drawn_apart(half_width: float, expected: list[str]) -> None:
-    """A hole in which a node has no point within 1.25 cells of it."""
+    """A hole of one and a half cells, and one of three and a half."""
     given = gs.Scene(gs.Outline(np.array([(0, 0), (6, 0), (6, 6), (0, 6)])), SOIL, cell=0.5)
     setup = gs.Setup(given, QUIET)
     solver = gs.Solver.of(given, QUIET)

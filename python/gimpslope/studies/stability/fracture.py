@@ -16,6 +16,7 @@ from matplotlib.figure import Figure
 import gimpslope as gs
 
 from ...method import Shape
+from ...method_warning import TORN
 from ..verify.problem import Check, FloatArray
 from . import rows
 from .mode import Findings, Mode, Table
@@ -44,8 +45,15 @@ def run(full: bool) -> Findings:
             why="twice the reach of a point, within the step of the spacings looked at",
         )
         for shape, reach in REACH.items()
-        if shape in lost
     ]
+    fails.append(
+        Check.at_most(
+            f"ugimp: rate at a spacing of {TORN:g} cells, of the true one",
+            bound=1 / 3,
+            got=float(np.interp(TORN, spacings, rates["ugimp"])),
+            why="most nodes between two points see one of them alone: a run warns of such holes",
+        )
+    )
     held = rates[FOLLOWS][spacings <= WIDEST]
     stands = [
         Check.at_least(
