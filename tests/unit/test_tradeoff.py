@@ -235,3 +235,17 @@ def test_quick_sweep_takes_two_grids_of_each_problem() -> None:
         assert {case.cell for case in quick.cases if case.problem == problem.name} == set(
             problem.cells[:2]
         )
+
+
+def test_page_tells_kinds_of_problems_and_models_of_stones_apart() -> None:
+    with_stone = problems.PROBLEMS["with_stone"]
+    found = [made(0.05, 1.0)]
+    for model, error, cost in (("deformable", 0.12, 8.0), ("softened", 0.12, 2.0)):
+        case = Case("with_stone", 0.1, (), model)
+        found.append(Measured(case, error, cost, cost, cost, 1, ""))
+    text = summary.markdown(Plan((BAR, with_stone), (), rounds=3), found)
+    elastic, yielding = text.split("## Elastic problems")[1].split("## Problems that yield")
+    assert "* **10 %**: uGIMP (default) reaches it in 1 of the 1 problems" in elastic
+    assert "* **10 %**: no case of any problem reaches it." in yielding
+    assert "| softened stone | 0.25 | - | 1.00 |" in text
+    assert "the nearest is uGIMP (default), deformable stone, h = 0.1 m: 12 %" in text

@@ -22,6 +22,7 @@ from .ranking import ByProblem
 
 _TOP = 300.0  # %, errors above it are no results
 _COLUMNS = 4
+_NEAR = 20.0  # pixels, in which numbers would run into each other
 _DEFAULT, _FRONT = "black", "C3"
 _SHADES = ("C4", "C0", "C2", "C1", "C6", "C5", "C8", "C9")
 
@@ -35,8 +36,9 @@ def chart(problem: Problem, measured: Sequence[Measured]) -> Figure:
     _cases(ax, shown)
     _default(ax, shown)
     best = front(shown)
-    _front(ax, shown, best, numbered=True)
+    _front(ax, shown, best)
     _finish(ax, problem, shown)
+    _numbers(ax, shown, best)
     failed = f", {len(measured) - len(shown)} more failed" * (len(measured) > len(shown))
     ax.set_title(f"{problem.title}: {len(shown)} cases{failed}")
     ax.set(xlabel="core-seconds", ylabel="error (%)")
@@ -56,7 +58,7 @@ def overview(by_problem: ByProblem) -> Figure:
         shown = [one for one in measured if math.isfinite(one.error)]
         _cases(ax, shown)
         _default(ax, shown)
-        _front(ax, shown, front(shown), numbered=False)
+        _front(ax, shown, front(shown))
         _finish(ax, problem, shown)
         ax.set_title(problem.title, fontsize="medium")
     for ax in panels[::_COLUMNS]:
@@ -97,26 +99,32 @@ def _default(ax: Axes, shown: Sequence[Measured]) -> None:
     ax.errorbar(cost, errors, xerr=ranges, fmt="*-", color=_DEFAULT, ms=9, lw=1.2, zorder=4)
 
 
-def _front(
-    ax: Axes, shown: Sequence[Measured], best: Sequence[Measured], *, numbered: bool
-) -> None:
-    """What no other case beats, as steps, with ranges of times and numbers."""
+def _front(ax: Axes, shown: Sequence[Measured], best: Sequence[Measured]) -> None:
+    """What no cheaper case comes near, as steps, with ranges of times."""
     errors = held(shown)
     cost, heights = [one.core_seconds for one in best], [100 * errors[one] for one in best]
     ax.step(cost, heights, where="post", color=_FRONT, linewidth=1.5, zorder=3)
     ranges = [[one.core_seconds - one.fastest for one in best]]
     ranges += [[one.slowest - one.core_seconds for one in best]]
     ax.errorbar(cost, heights, xerr=ranges, fmt="none", ecolor=_FRONT, elinewidth=0.8, zorder=3)
-    if not numbered:
-        return
-    for number, at in enumerate(zip(cost, heights, strict=True), start=1):
+
+
+def _numbers(ax: Axes, shown: Sequence[Measured], best: Sequence[Measured]) -> None:
+    """Numbers below the steps; above, where the one before is near."""
+    errors = held(shown)
+    places = [(one.core_seconds, 100 * errors[one]) for one in best]
+    on_screen = ax.transData.transform(np.reshape(places, (-1, 2)))
+    below_before = None
+    for number, (place, pixels) in enumerate(zip(places, on_screen, strict=True), start=1):
+        near = below_before is not None and np.abs(pixels - below_before).max() < _NEAR
+        below_before = below_before if near else pixels
         ax.annotate(
             str(number),
-            at,
-            xytext=(-4, -4),
+            place,
+            xytext=(4, 4) if near else (-4, -4),
             textcoords="offset points",
-            ha="right",
-            va="top",
+            ha="left" if near else "right",
+            va="bottom" if near else "top",
             color=_FRONT,
             fontsize="small",
             weight="bold",

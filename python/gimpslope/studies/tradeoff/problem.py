@@ -31,6 +31,7 @@ class Problem:
     solve : by cell (m), method, and model of the stones (None without); raises what the solver does
     method : the package's default, with the viscosity where that is part of the problem
     dimensions : in which the number of points and with it the cost grows
+    yields : whether the material does, or is elastic
     known_to : uncertainty of the answer, a part of it; 0 where it is exact
     fine : finer cells, on which each choice is measured alone at the longer step
     dear : still finer ones, on which no more than some changes are measured
@@ -45,6 +46,7 @@ class Problem:
     solve: Callable[[float, Method, str | None], Solution]
     method: Method = Method()  # noqa: RUF009 (frozen)
     dimensions: int = 2
+    yields: bool = False
     known_to: float = 0.0
     fine: tuple[float, ...] = ()
     dear: Mapping[float, tuple[Changes, ...]] = field(default_factory=dict)

@@ -46,8 +46,9 @@ def markdown(plan: Plan, measured: Sequence[Measured]) -> str:
     parts = [head, _EXPLANATION.format(rounds=_rounds(measured))]
     if missing := len(plan.cases) - len(measured):
         parts += [f"Of {len(plan.cases)} cases {missing} are not measured yet.\n"]
-    parts += ["![overview](overview.png)\n", "## Overall\n"]
-    parts += [*(_overall(by_problem, target) for target in TARGETS)]
+    parts += ["![overview](overview.png)\n"]
+    for name, some_problems in _groups(by_problem).items():
+        parts += [f"## {name}\n", "".join(_overall(some_problems, each) for each in TARGETS)]
     parts += ["## Each choice alone\n", _EFFECTS, _effects(by_problem)]
     for problem, some in by_problem:
         parts += [f"## {problem.title}\n", _of_problem(problem, some)]
@@ -58,6 +59,15 @@ def _rounds(measured: Sequence[Measured]) -> str:
     found = {one.rounds for one in measured if not one.failure}
     low, high = min(found, default=0), max(found, default=0)
     return f"{high} rounds" if low == high else f"{low} to {high} rounds"
+
+
+def _groups(by_problem: ByProblem) -> dict[str, ByProblem]:
+    """All problems, and those of each kind unless that is all."""
+    yielding = [one for one in by_problem if one[0].yields]
+    elastic = [one for one in by_problem if not one[0].yields]
+    if not (yielding and elastic):
+        return {"Overall": by_problem}
+    return {"Overall": by_problem, "Elastic problems": elastic, "Problems that yield": yielding}
 
 
 def _overall(by_problem: ByProblem, target: float) -> str:
