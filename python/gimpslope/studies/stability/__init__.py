@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 
+from ...method_warning import MethodWarning
 from .mode import Findings, Mode, Table
 
 NAMES = (
@@ -72,5 +74,7 @@ def survey(names: Sequence[str] = NAMES, *, full: bool = True) -> Iterator[Surve
 
 def _survey(one: Mode, full: bool) -> Surveyed:
     start = time.perf_counter()
-    findings = one.run(full)
+    with warnings.catch_warnings():  # it goes where they warn of on purpose
+        warnings.simplefilter("ignore", MethodWarning)
+        findings = one.run(full)
     return Surveyed(one, findings, time.perf_counter() - start)

@@ -61,7 +61,7 @@ class Limits(NamedTuple):
 
 def run(full: bool) -> Findings:
     """All schemes and shapes; in full at more places and with one to four points a cell."""
-    offsets = np.arange(0.02, 1, 1 / 6 if full else 1 / 3)
+    offsets = np.arange(0.02, 1, 1 / 6 if full else 1 / 2)
     cases = [
         Case(shape, scheme, per_side, dimensions)
         for dimensions in (1, 2)
