@@ -133,7 +133,7 @@ def _sentence(problem: Problem, some: Sequence[Measured], target: float) -> str:
     best = cheapest(some, target)
     if best is None:
         nearest = min(some, key=lambda one: errors[one])
-        return f"{aim}no case reaches it; the nearest is {_told(nearest, errors[nearest])}."
+        return f"{aim}no case reaches it; the nearest is {_told(nearest, errors[nearest], 3)}."
     finest = ", finest" if is_finest(best, some) else ""
     text = aim + _told(best, errors[best]) + finest
     default = cheapest([one for one in some if one.case.is_default], target)
@@ -145,7 +145,7 @@ def _sentence(problem: Problem, some: Sequence[Measured], target: float) -> str:
     return f"{text}; the default needs h = {default.case.cell:.3g} m and {ratio:.2g} times as long."
 
 
-def _told(one: Measured, error: float) -> str:
+def _told(one: Measured, error: float, digits: int = 2) -> str:
     time = words.seconds(one.core_seconds)
     spread = "" if one.rounds < 2 else f" ({one.fastest:.2g} to {one.slowest:.2g})"
-    return f"{words.case(one.case)}: {words.percent(error)} in {time}{spread}"
+    return f"{words.case(one.case)}: {words.percent(error, digits)} in {time}{spread}"

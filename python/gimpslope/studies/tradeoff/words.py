@@ -46,9 +46,9 @@ def case(one: Case) -> str:
     return f"{changes(dict(one.changes))}{stones}, h = {one.cell:.3g} m"
 
 
-def percent(error: float) -> str:
-    """An error to two digits."""
-    return f"{float(f'{100 * error:.2g}'):g} %"
+def percent(error: float, digits: int = 2) -> str:
+    """An error to so many digits."""
+    return f"{float(f'{100 * error:.{digits}g}'):g} %"
 
 
 def seconds(value: float) -> str:
