@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from gimpslope.energy import Energy
 from gimpslope.planning import Estimate, blend, grids, stones
 from gimpslope.planning.cost import seconds
 from gimpslope.planning.pilot import Pilot
+from gimpslope.planning.problem import pose
 from gimpslope.planning.tail import NO_TAIL, tail
 from gimpslope.studies import reference, within
 
@@ -97,6 +99,31 @@ def test_blend_is_held_as_the_viscosity_it_has(given: dict[str, float]) -> None:
     assert held.blend[0] == "viscosity"
     share = gs.Solver.of(scene, held).alpha
     assert share == pytest.approx(gs.Solver.of(scene, method).alpha, rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", ["linear", "cpgimp", "quadratic_bspline"])
+def test_blend_is_held_with_every_shape(shape: str) -> None:
+    scene = reference.slope(cell=0.8)
+    method = gs.Method(shape=shape, alpha=0.02)
+    share = gs.Solver.of(scene, blend.held(scene, method)).alpha
+    assert share == pytest.approx(0.02, rel=1e-9)
+
+
+@pytest.mark.parametrize("transfer", ["apic", "xpic"])
+def test_transfers_without_a_blend_are_planned(small: gs.Scene, transfer: Any) -> None:
+    method = gs.Method(transfer=transfer, courant=0.3)
+    posed = pose(small, 0.5, method, gs.Stages(), until_rest=False)
+    assert posed.on(2).method == method
+
+
+@pytest.mark.parametrize(
+    "given", [{"transfer": "apic"}, {"scheme": "musl"}, {"precision": "single"}]
+)
+def test_stones_stay_where_the_method_has_none_that_are_rigid(given: dict[str, Any]) -> None:
+    posed = pose(
+        with_stones(0.5, reference.rock()), 0.5, gs.Method(**given), gs.Stages(), until_rest=False
+    )
+    assert posed.setup.scene.stone == reference.rock()
 
 
 def test_a_blend_beyond_all_of_pic_takes_shorter_steps() -> None:
@@ -337,6 +364,9 @@ def test_command(
         ("reproduce --error 0", "error must be"),
         ("reproduce --error 0.1 --cell 0.2", "--cell must be left out with --error, got 0.2"),
         ("reproduce --error 0.1 --convergence", "--convergence must be left out"),
+        ("reproduce --error 0.1 --stone-friction 20", "--stone-friction must be left out"),
+        ("reproduce --error 0.1 --seed 1 2", "--seed must be a single one with --error"),
+        ("reproduce --error 0.1 --reading literal identified", "--reading must be a single one"),
         ("reproduce --budget 60", "--budget must be given with --error"),
     ],
 )

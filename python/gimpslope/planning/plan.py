@@ -155,7 +155,7 @@ def plan(
     quantities : names as in a run's summary: "peak_kinetic_energy", "time_of_peak",
         "speed_at_peak", "max_displacement_total", "_horizontal" and "_vertical", and "run_out".
         With those of the peak alone, runs end soon after it
-    method : as for `simulate`; the plan chooses step and blend
+    method : as for `simulate`; the plan chooses the step, and holds a blend as a viscosity
     stages : as for `simulate`; the plan chooses gravity's ramp and may end the slide early
     budget : wall time that pilots and run may take, s, > 0; two pilots are run in any case
     progress : tell of each pilot on standard error
