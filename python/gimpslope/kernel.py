@@ -12,8 +12,6 @@ from ._check import FloatArray
 from .materials import DruckerPrager, Material
 from .method import GIMP, Shape
 
-_PLACES = 256  # of a point in a cell
-
 
 class ShapeFunctions(NamedTuple):
     """Shape functions of n points at the k nodes each of them reaches.
@@ -85,10 +83,15 @@ def second_moment(shape: Shape, half_length: float, *, cell: float) -> float:
     half_length : of the domain of a point that has one, m
     cell : side of a grid cell, m
     """
-    place = cell * np.column_stack([(np.arange(_PLACES) + 0.5) / _PLACES, np.full(_PLACES, 0.5)])
+    reach = half_length / cell
+    ends = np.unique([0.0, reach % 1, 0.5, -reach % 1, 1.0])  # between them it is a polynomial
+    root, share = np.polynomial.legendre.leggauss(4)
+    x = (ends[:-1, None] + np.diff(ends)[:, None] * (root + 1) / 2).ravel()
+    weight = (np.diff(ends)[:, None] * share / 2).ravel()
+    place = cell * np.column_stack([x, np.full_like(x, 0.5)])
     nodes, values, _ = shape_functions(shape, place, np.full_like(place, half_length), cell=cell)
     apart = nodes[..., 0] * cell - place[:, :1]
-    return float((values * apart**2).sum(axis=1).mean())
+    return float(weight @ (values * apart**2).sum(axis=1))
 
 
 def return_mapping(material: DruckerPrager, stress: npt.ArrayLike) -> NewStress:

@@ -66,9 +66,16 @@ def test_return_mapping_refuses() -> None:
 
 @pytest.mark.parametrize(
     ("shape", "half_length", "expected"),
-    [("linear", 0.0, 1 / 6), ("ugimp", 0.25, 1 / 6 + 1 / 48), ("ugimp", 0.5, 1 / 4)],
+    [
+        ("linear", 0.0, 1 / 6),
+        ("ugimp", 0.25, 1 / 6 + 1 / 48),
+        ("ugimp", 0.3, 1 / 6 + 0.03),
+        ("ugimp", 0.5, 1 / 4),
+        ("quadratic_bspline", 0.25, 1 / 4),
+    ],
 )
 def test_second_moment(shape: str, half_length: float, expected: float) -> None:
-    """That of a hat and of the box it is averaged over add up: h^2 / 6 + l^2 / 3."""
+    """That of a hat and of the box it is averaged over add up: h^2 / 6 + l^2 / 3; a spline of three
+    boxes one cell wide has h^2 / 4."""
     moment = gs.kernel.second_moment(shape, half_length * 0.2, cell=0.2)
-    assert moment == pytest.approx(expected * 0.2**2, rel=1e-4)
+    assert moment == pytest.approx(expected * 0.2**2, rel=1e-12)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,9 +14,10 @@ import gimpslope as gs
 from gimpslope import cli, planning
 from gimpslope.analysis import smooth_peak
 from gimpslope.energy import Energy
-from gimpslope.planning import Estimate, blend, grids, stones
+from gimpslope.planning import Estimate, blend, grids, savings, search, stones
 from gimpslope.planning.cost import seconds
 from gimpslope.planning.pilot import Pilot
+from gimpslope.planning.problem import pose
 from gimpslope.planning.tail import NO_TAIL, tail
 from gimpslope.studies import reference, within
 
@@ -97,6 +99,31 @@ def test_blend_is_held_as_the_viscosity_it_has(given: dict[str, float]) -> None:
     assert held.blend[0] == "viscosity"
     share = gs.Solver.of(scene, held).alpha
     assert share == pytest.approx(gs.Solver.of(scene, method).alpha, rel=1e-9)
+
+
+@pytest.mark.parametrize("shape", ["linear", "cpgimp", "quadratic_bspline"])
+def test_blend_is_held_with_every_shape(shape: str) -> None:
+    scene = reference.slope(cell=0.8)
+    method = gs.Method(shape=shape, alpha=0.02)
+    share = gs.Solver.of(scene, blend.held(scene, method)).alpha
+    assert share == pytest.approx(0.02, rel=1e-9)
+
+
+@pytest.mark.parametrize("transfer", ["apic", "xpic"])
+def test_transfers_without_a_blend_are_planned(small: gs.Scene, transfer: Any) -> None:
+    method = gs.Method(transfer=transfer, courant=0.3)
+    posed = pose(small, 0.5, method, gs.Stages(), until_rest=False)
+    assert posed.on(2).method == method
+
+
+@pytest.mark.parametrize(
+    "given", [{"transfer": "apic"}, {"scheme": "musl"}, {"precision": "single"}]
+)
+def test_stones_stay_where_the_method_has_none_that_are_rigid(given: dict[str, Any]) -> None:
+    posed = pose(
+        with_stones(0.5, reference.rock()), 0.5, gs.Method(**given), gs.Stages(), until_rest=False
+    )
+    assert posed.setup.scene.stone == reference.rock()
 
 
 def test_a_blend_beyond_all_of_pic_takes_shorter_steps() -> None:
@@ -207,6 +234,69 @@ def small() -> gs.Scene:
 METHOD = gs.Method(viscosity=0.2)
 
 
+NO_RUN = gs.Run.__new__(gs.Run)
+
+
+class Given(search.Search):
+    """A search that knows what a finer grid costs."""
+
+    def seconds(self, levels: int) -> float:
+        return 3.0 * levels
+
+
+@pytest.mark.parametrize(("change", "tries"), [(0.0, 1), (1.0, 3)])
+@pytest.mark.parametrize("left", [5.9, 6.1])
+def test_time_that_is_spent_counts(
+    monkeypatch: pytest.MonkeyPatch, small: gs.Scene, change: float, tries: int, left: float
+) -> None:
+    """Of a further pilot of 3 s, it leaves the half or not."""
+    problem = pose(small, 0.5, METHOD, gs.Stages(), until_rest=False)
+    saved = savings.Saved(problem.setup, pilot(NO_RUN), {PEAK[0]: 0.0}, (), 4.0)
+    monkeypatch.setattr(search, "Search", Given)
+    monkeypatch.setattr(search, "save", lambda *_: saved)
+    monkeypatch.setattr(search, "tail", lambda *_: NO_TAIL)
+    monkeypatch.setattr(search, "change", lambda *_: {PEAK[0]: change})
+    monkeypatch.setattr(
+        search, "fly", lambda *_, **__: pilot(NO_RUN, seconds=2.0, values={PEAK[0]: 1.0})
+    )
+    target = planning.Target(0.5, PEAK[:1], tries * 6.0 + left)
+    found = search.search(problem, target, Path(), progress=False)
+    further = left > 6
+    assert len(found.pilots) == 2 + further
+    assert found.spent == tries * 6.0 + 2.0 * further
+    assert found.left == pytest.approx(left - 2.0 * further)
+
+
+def tried(
+    monkeypatch: pytest.MonkeyPatch, setup: gs.Setup, *values: tuple[float, float]
+) -> savings.Saved:
+    """What is saved where the runs, in turn, give these values."""
+    runs = (pilot(NO_RUN, values=dict(zip(PEAK, pair, strict=True))) for pair in values)
+    monkeypatch.setattr(savings, "fly", lambda *_: next(runs))
+    return savings.save(setup, planning.Target(0.1, PEAK), Path())
+
+
+def test_what_is_saved_already_is_not_tried(
+    monkeypatch: pytest.MonkeyPatch, small: gs.Scene
+) -> None:
+    method = replace(METHOD, courant=0.95)
+    setup = gs.Setup(small, method, gs.Stages(gravity=gs.Gravity(ramp=0.0)))
+    found = tried(monkeypatch, setup, (1.0, 1.0))
+    assert found.setup == setup and found.reasons == ()
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_saving_of_unknown_effect_is_not_kept(
+    monkeypatch: pytest.MonkeyPatch, small: gs.Scene, order: int
+) -> None:
+    unknown = (1.0, math.nan)[::order]
+    setup = gs.Setup(small, METHOD)
+    found = tried(monkeypatch, setup, unknown, unknown, unknown)
+    assert found.setup == setup
+    assert all("not kept" in why and "not reached" in why for why in found.reasons)
+    assert len(found.reasons) == 2
+
+
 @pytest.fixture(scope="module")
 def plan(small: gs.Scene) -> gs.Plan:
     return gs.plan(
@@ -238,15 +328,16 @@ def test_plan_of_a_small_slope(plan: gs.Plan, small: gs.Scene, tmp_path: Path) -
         plan.run(tmp_path / "small.h5")
 
 
-def test_a_plan_beyond_its_budget_says_what_it_would_need(small: gs.Scene) -> None:
+def test_a_plan_beyond_its_budget_says_what_it_would_need(small: gs.Scene, tmp_path: Path) -> None:
     plan = gs.plan(small, 0.05, PEAK[:1], method=METHOD, budget=1e-3, progress=False)
     assert not plan.holds and plan.levels == 0
     assert "cannot promise 0.05" in str(plan)
     assert any("needs a cell" in reason and "budget" in reason for reason in plan.reasons)
-    folder = plan._directory
-    assert folder.is_dir()
+    folder, answer = plan._directory, plan.run(tmp_path / "small.h5")
     del plan
-    assert not folder.exists()  # the pilots' files go with the plan
+    assert all(len(grid.run.final.position) == grid.points for grid in answer.grids)
+    del answer
+    assert not folder.exists()  # the pilots' files go with plan and answer
 
 
 def test_stones_that_share_nodes_are_not_promised() -> None:
@@ -337,6 +428,9 @@ def test_command(
         ("reproduce --error 0", "error must be"),
         ("reproduce --error 0.1 --cell 0.2", "--cell must be left out with --error, got 0.2"),
         ("reproduce --error 0.1 --convergence", "--convergence must be left out"),
+        ("reproduce --error 0.1 --stone-friction 20", "--stone-friction must be left out"),
+        ("reproduce --error 0.1 --seed 1 2", "--seed must be a single one with --error"),
+        ("reproduce --error 0.1 --reading literal identified", "--reading must be a single one"),
         ("reproduce --budget 60", "--budget must be given with --error"),
     ],
 )

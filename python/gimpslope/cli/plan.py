@@ -37,7 +37,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--error",
         type=float,
-        default=0.05,
+        default=planning.Target.error,
         metavar="E",
         help="asked for, a share of each quantity (default: %(default)s)",
     )
@@ -52,9 +52,9 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--budget",
         type=float,
-        default=600.0,
+        default=planning.Target.budget,
         metavar="S",
-        help="wall time that pilots and run may take, s (default: 600)",
+        help="wall time that pilots and run may take, s (default: %(default)g)",
     )
     parser.add_argument("--threads", type=int, metavar="N", help="(default: 1)")
     parser.add_argument(

@@ -17,6 +17,7 @@ _NOT_WITH_ERROR = {
     "cell": reproduce.CELL,
     "stone_model": None,
     "stone_modulus": None,
+    "stone_friction": None,
     "duration": 10.0,
     "time_step": None,
     "convergence": None,
@@ -35,6 +36,7 @@ def add(commands: Commands) -> None:
     )
     parser.set_defaults(prepare=_prepare)
     add_readings(parser)
+    parser.set_defaults(reading=None)
     parser.add_argument(
         "--cell",
         type=float,
@@ -81,7 +83,7 @@ def add(commands: Commands) -> None:
         type=float,
         metavar="E",
         help="in place of all that, plan each slope for its figures to that error, a share, and "
-        "run it so: of the first reading and seed",
+        f"run it so, of one reading (default: {next(iter(reference.READINGS))}) and seed",
     )
     parser.add_argument(
         "--budget",
@@ -96,7 +98,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--overwrite", action="store_true", help="replace files of other runs in the directory"
     )
-    parser.add_argument("--quiet", action="store_true", help="no progress bar")
+    parser.add_argument("--quiet", action="store_true", help="no progress bar; --error has none")
 
 
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
@@ -112,7 +114,7 @@ def _prepare(options: argparse.Namespace) -> Callable[[], int]:
     none_named = options.convergence == []
     plan = reproduce.plan(
         options.output,
-        readings=list(dict.fromkeys(options.reading)),
+        readings=list(dict.fromkeys(options.reading or reference.READINGS)),
         cell=options.cell,
         stone_model=options.stone_model or "deformable",
         stone_modulus=options.stone_modulus,
@@ -143,6 +145,10 @@ def _within(options: argparse.Namespace, jobs: int) -> Callable[[], int]:
         if (given := getattr(options, name)) != default:
             option = "--" + name.replace("_", "-")
             raise ValueError(f"{option} must be left out with --error, got {given!r}")
+    readings = options.reading or list(reference.READINGS)[:1]
+    for option, of_all in (("--reading", readings), ("--seed", options.seed)):
+        if len(of_all) > 1:
+            raise ValueError(f"{option} must be a single one with --error, got {of_all}")
     budget = _BUDGET if options.budget is None else options.budget
     target = Target(options.error, within.QUANTITIES, budget)
     make_directory("--output", options.output)
@@ -151,7 +157,7 @@ def _within(options: argparse.Namespace, jobs: int) -> Callable[[], int]:
         found = within.study(
             target,
             options.output,
-            reading=options.reading[0],
+            reading=readings[0],
             seed=options.seed[0],
             jobs=jobs,
             overwrite=options.overwrite,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from ..kernel import second_moment
 from ..materials import Deformable
 from ..method import Method
 from ..scene import Scene
@@ -15,10 +16,10 @@ def held(scene: Scene, method: Method) -> Method:
     """The method with the viscosity that its blend has in a scene and at its step.
 
     A share of PIC a step, or a relaxation time, is another viscosity on every grid, and there would
-    be no limit of the same problem.
+    be no limit of the same problem. Transfers but "flip" have no blend, and stay.
     """
     kind, value = method.blend
-    if kind == "viscosity":
+    if kind == "viscosity" or method.transfer != "flip":
         return method
     share = value if kind == "alpha" else time_step(scene, method) / value
     viscosity = share * _moment(scene, method) / time_step(scene, method)
@@ -28,8 +29,10 @@ def held(scene: Scene, method: Method) -> Method:
 def within_limits(scene: Scene, method: Method) -> Method:
     """The method with a Courant number so small that its viscosity needs no more than 0.9 of PIC,
     for more than all of it cannot be had; it matters on very fine grids."""
+    if method.viscosity is None:
+        return method
     kind, number = method.step
-    assert kind == "courant" and method.viscosity is not None
+    assert kind == "courant"
     share = method.viscosity * time_step(scene, method) / _moment(scene, method)
     return method if share <= _FULLEST else replace(method, courant=number * _FULLEST / share)
 
@@ -44,7 +47,4 @@ def time_step(scene: Scene, method: Method) -> float:
 
 
 def _moment(scene: Scene, method: Method) -> float:
-    """Second moment of the shape function, m2, by which a blend of alpha a step is a viscosity of
-    alpha times it over the step (see `Method`)."""
-    half_length = scene.spacing / 2 if method.has_domains else 0.0
-    return scene.cell**2 / 6 + half_length**2 / 3
+    return second_moment(method.shape, scene.spacing / 2, cell=scene.cell)

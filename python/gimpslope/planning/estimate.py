@@ -13,12 +13,11 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-from ..studies.richardson import Extrapolation, extrapolate
+from ..studies.richardson import CAUTION, TRUSTED, Extrapolation, extrapolate
 from .quantities import QUANTITIES
 
-_CAUTION = 3.0
 _SECOND_ORDER = 1 / 4
-_FIRST, _SLOWEST = 1.0, 0.5  # orders
+_FIRST = 1.0  # order
 _MOST_LEVELS = 8
 
 
@@ -71,7 +70,7 @@ class Estimate:
 
     def at_worst(self, levels: int) -> float:
         """The same with the least order that is trusted, a half."""
-        return self._of_grid * 2 ** (-min(self._order, _SLOWEST) * levels) + self.fixed
+        return self._of_grid * 2 ** (-min(self._order, TRUSTED[0]) * levels) + self.fixed
 
     def levels(self, error: float) -> int | None:
         """How often the cell is to be halved for an error; None if that cannot be told."""
@@ -109,7 +108,7 @@ class Estimate:
             return self._limit.uncertainty / abs(self.value)
         changes = [abs(a - b) for a, b in zip(self.raw, self.raw[1:], strict=False)]
         *before, last = changes[-2:]
-        return _CAUTION * max(last, *(_SECOND_ORDER * c for c in before), 0.0) / abs(self.value)
+        return CAUTION * max(last, *(_SECOND_ORDER * c for c in before), 0.0) / abs(self.value)
 
     @property
     def _order(self) -> float:

@@ -37,7 +37,8 @@ class Answer:
     run : on the finest grid, which its file holds
     estimates : of each quantity by name, by all grids: value, error, and the raw values beside
     error : asked for
-    grids : all runs, from coarse to fine, the pilots first
+    grids : all runs, from coarse to fine, the pilots first; the files of all but the last go with
+        plan and answer
     seconds : wall time of the runs, without the pilots, s
     apart : whether the grids that the estimates are from tell all stones apart
     """
@@ -48,6 +49,7 @@ class Answer:
     grids: tuple[Pilot, ...]
     seconds: float
     apart: bool
+    _plan: Plan = field(repr=False)  # the pilots' files are there as long as it is
 
     @property
     def reached(self) -> bool:
@@ -98,8 +100,8 @@ class Plan:
     def run(self, output: str | PathLike[str] = "run.h5", *, overwrite: bool = False) -> Answer:
         """Run the slope on the chosen grid and on those between it and the pilots; extrapolate.
 
-        The run file is that of the finest grid; those between are not kept. Raises as `simulate`
-        does.
+        The run file is that of the finest grid; those between go with plan and answer.
+        Raises as `simulate` does.
         """
         start, found = clock.perf_counter(), self._search
         if self.levels == 0:
@@ -115,6 +117,7 @@ class Plan:
             (*found.pilots, *finer),
             clock.perf_counter() - start,
             found.levels_apart is not None and self.levels >= found.levels_apart,
+            self,
         )
 
     def _between(self) -> list[Pilot]:
@@ -131,12 +134,12 @@ class Plan:
 
 def plan(
     scene: Scene,
-    error: float = 0.05,
+    error: float = Target.error,
     quantities: Sequence[str] = DEFAULT,
     *,
     method: Method | None = None,
     stages: Stages | None = None,
-    budget: float = 600.0,
+    budget: float = Target.budget,
     progress: bool = True,
 ) -> Plan:
     """Find by pilots on coarse grids the cheapest run that gives some results to an error.
@@ -155,7 +158,7 @@ def plan(
     quantities : names as in a run's summary: "peak_kinetic_energy", "time_of_peak",
         "speed_at_peak", "max_displacement_total", "_horizontal" and "_vertical", and "run_out".
         With those of the peak alone, runs end soon after it
-    method : as for `simulate`; the plan chooses step and blend
+    method : as for `simulate`; the plan chooses the step, and holds a blend as a viscosity
     stages : as for `simulate`; the plan chooses gravity's ramp and may end the slide early
     budget : wall time that pilots and run may take, s, > 0; two pilots are run in any case
     progress : tell of each pilot on standard error
@@ -200,8 +203,7 @@ def _affordable(found: Search) -> int:
     """The levels that are needed, or as many as the budget leaves room for; one where it is not
     known how many are needed."""
     wanted = 1 if found.levels is None else found.levels
-    left = found.target.budget - found.spent
-    return max((n for n in range(wanted + 1) if _cost(found, n) <= left), default=0)
+    return max((n for n in range(wanted + 1) if _cost(found, n) <= found.left), default=0)
 
 
 def _cost(found: Search, levels: int) -> float:

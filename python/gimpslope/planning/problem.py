@@ -55,7 +55,7 @@ def pose(
             f"the blend of {kind} = {value:g} is held as a viscosity of {held.viscosity:.3g} m2/s, "
             f"that of a cell of {scene.cell:g} m, or each grid would be another problem"
         )
-    if method.precision == "double":
+    if (method.precision, method.transfer, method.scheme) == ("double", "flip", "usf"):
         scene, why = stones.made_rigid(scene, _RIGID_SHARE * error)
         reasons += [why] if why else []
     slide = stages.slide

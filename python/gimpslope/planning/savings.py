@@ -6,10 +6,13 @@ on the coarsest grid, a quarter is left on the third, which is the coarsest that
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
+
+import numpy as np
 
 from ..setup import Setup
 from ..stages import Gravity
@@ -35,7 +38,9 @@ def _gravity_at_once(setup: Setup) -> Setup:
 
 
 def _long_steps(setup: Setup) -> Setup:
-    return replace(setup, method=replace(setup.method, courant=_COURANT))
+    kind, number = setup.method.step
+    assert kind == "courant"
+    return replace(setup, method=replace(setup.method, courant=max(number, _COURANT)))
 
 
 SAVINGS = (
@@ -65,21 +70,25 @@ class Saved:
 
 
 def save(setup: Setup, target: Target, directory: Path) -> Saved:
-    """Try each saving on top of those before."""
+    """Try each saving that changes the setup, on top of those before."""
     names = target.quantities
     plain = fly(setup, directory / "plain.h5", names)
     saved = Saved(setup, plain, dict.fromkeys(names, 0.0), (), plain.seconds)
     for number, saving in enumerate(SAVINGS):
         changed = saving.apply(saved.setup)
+        if changed == saved.setup:
+            continue
         pilot = fly(changed, directory / f"saving_{number}.h5", names)
         found = change(pilot, plain)
         changes = {name: _ON_THE_THIRD * size for name, size in found.items()}
-        worst = max(changes.values())
+        worst = float(np.max(list(changes.values())))  # NaN if one of them is
         if worst <= _SHARE * target.error:
             reason = f"{saving.title}: that changes no quantity by more than {worst:.1g} of itself"
             saved = Saved(changed, pilot, changes, (*saved.reasons, reason), saved.seconds)
         else:
-            reason = f"not kept: {saving.title}, which changes a quantity by {worst:.1g} of itself"
+            known = math.isfinite(worst)
+            size = f"by {worst:.1g} of itself" if known else "that is not reached, or 0"
+            reason = f"not kept: {saving.title}, which changes a quantity {size}"
             saved = replace(saved, reasons=(*saved.reasons, reason))
         saved = replace(saved, seconds=saved.seconds + pilot.seconds)
     return saved

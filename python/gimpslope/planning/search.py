@@ -27,7 +27,7 @@ _TRIES = 3
 _ALIKE = 2 / 3
 _THIRD_SHARE = 1 / 2
 _PILOT_SHARE = 1 / 4
-"""Of the budget, what a further pilot may cost; the run extrapolates from it too."""
+"""Of what is left of the budget, what a further pilot may cost; the run has a use for it too."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,7 @@ class Search:
     pilots : coarse to fine
     target : what is asked for
     tail : where slides of finer grids than the first two may end
+    lost : wall time on grids that turned out too coarse, s
     """
 
     problem: Problem
@@ -47,6 +48,7 @@ class Search:
     pilots: tuple[Pilot, ...]
     target: Target
     tail: Tail
+    lost: float = 0.0
 
     @property
     def estimates(self) -> tuple[Estimate, ...]:
@@ -123,8 +125,14 @@ class Search:
 
     @property
     def spent(self) -> float:
-        """Wall time of the pilots so far, and of what was tried on the coarsest grid, s."""
-        return self.saved.seconds + sum(pilot.seconds for pilot in self.pilots[1:])
+        """Wall time of all runs so far: pilots, what was tried on the coarsest grid and what is
+        lost, s."""
+        return self.lost + self.saved.seconds + sum(pilot.seconds for pilot in self.pilots[1:])
+
+    @property
+    def left(self) -> float:
+        """Of the budget, s; negative where more is spent."""
+        return self.target.budget - self.spent
 
 
 def search(
@@ -135,34 +143,36 @@ def search(
     progress: bool,
 ) -> Search:
     """Pilots on grids each half as coarse as the one before: two at least, three if that costs no
-    more than half the budget (s), and then as long as the grid that will do is not the next one and
-    a pilot costs no more than a quarter."""
+    more than half of what is left of the budget, and then as long as the grid that will do is not
+    the next one and a pilot costs no more than a quarter of what is left."""
     found = _begin(problem, target, directory)
     while True:
         if progress:
             _tell(found.pilots[-1])
         few = len(found.pilots) < ORDER_NEEDS
         near = not few and found.levels in (0, 1)
-        if near or found.seconds(1) > target.budget * (_THIRD_SHARE if few else _PILOT_SHARE):
+        if near or found.seconds(1) > found.left * (_THIRD_SHARE if few else _PILOT_SHARE):
             return found
         level = len(found.pilots)
         pilot = found.fly(level, directory / f"pilot_{level}.h5")
         found = replace(found, pilots=(*found.pilots, pilot))
 
 
-def _begin(problem: Problem, target: Target, directory: Path, tries: int = _TRIES) -> Search:
+def _begin(
+    problem: Problem, target: Target, directory: Path, tries: int = _TRIES, lost: float = 0.0
+) -> Search:
     """The savings on the coarsest grid and the pilot on the next one; with that as the coarsest
-    anew, twice at most and if half the budget allows, where a value is off by more than two
+    anew, twice at most and if half of what is left allows, where a value is off by more than two
     thirds."""
     saved = save(problem.setup, target, directory)
     path = directory / "pilot_1.h5"
     second = fly(problem.on(1, saved.setup), path, target.quantities)
     end = tail(saved.pilot, second, target.error)
-    found = Search(problem, saved, (saved.pilot, second), target, end)
+    found = Search(problem, saved, (saved.pilot, second), target, end, lost)
     alike = all(size <= _ALIKE for size in change(saved.pilot, second).values())
-    if alike or tries == 1 or found.seconds(1) > _THIRD_SHARE * target.budget:
+    if alike or tries == 1 or found.seconds(1) > _THIRD_SHARE * found.left:
         return found
-    return _begin(problem.finer(), target, directory, tries - 1)
+    return _begin(problem.finer(), target, directory, tries - 1, found.spent)
 
 
 def _tell(pilot: Pilot) -> None:

@@ -9,11 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..materials import Deformable, DruckerPrager, Material, Rigid
+from ..method_warning import NEAR_STONES
 from ..scene import Scene
 from ..stones import Stones
-
-APART = 2.0
-"""Cells between two stones from which on they share no nodes and soil has some of its own."""
 
 _STRONG = 4.0
 
@@ -35,7 +33,7 @@ class Sampling(NamedTuple):
     @property
     def apart(self) -> bool:
         """Whether no two stones share nodes."""
-        return self.gap >= APART
+        return self.gap >= NEAR_STONES
 
 
 def sampling(scene: Scene) -> Sampling | None:
@@ -47,7 +45,7 @@ def sampling(scene: Scene) -> Sampling | None:
     points = scene.points
     return Sampling(
         gap=float(gaps.min()),
-        close=float(np.mean(gaps < APART)),
+        close=float(np.mean(gaps < NEAR_STONES)),
         area=float(points.volume[points.stone >= 0].sum()) / stones.area,
     )
 
@@ -56,7 +54,7 @@ def cell_apart(scene: Scene) -> float:
     """The largest cell on which no two stones share nodes, m; 0 where two touch, infinite for fewer
     than two."""
     stones = Stones(scene.stones)
-    return float(stones.gaps().min()) / APART if len(stones) > 1 else math.inf
+    return float(stones.gaps().min()) / NEAR_STONES if len(stones) > 1 else math.inf
 
 
 def made_rigid(scene: Scene, share: float) -> tuple[Scene, str]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import h5py
 
+from ..method_warning import NEAR_STONES
 from ..run import Run
 from ..summary import still_grows
 from . import reference
@@ -21,7 +22,6 @@ _ROWS = (
     ("final kinetic energy", "final_kinetic_energy", "J/m"),
 )
 _OF_PEAK = {"time_of_peak", "peak_kinetic_energy", "speed_at_peak"}
-_APART = 2.0  # cells from which on two stones share no nodes
 
 
 def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[str, float]) -> str:
@@ -38,7 +38,7 @@ def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[s
         )
     gap = summary["smallest_gap_in_cells"]
     if gap is not None:
-        sharing = "; closer than two cells stones share nodes" if gap < _APART else ""
+        sharing = "; closer than two cells stones share nodes" if gap < NEAR_STONES else ""
         lines.append(f"The nearest two stones are {gap:.2f} cells apart{sharing}.")
     rate = summary["point_steps_per_second"]
     if rate is not None:

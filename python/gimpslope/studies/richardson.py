@@ -20,9 +20,11 @@ from .._check import FloatArray
 
 Behaviour = Literal["converges", "order not settled", "oscillates", "diverges"]
 
-_TRUSTED = (0.5, 2.1)
+TRUSTED = (0.5, 2.1)
+"""Orders of which a limit is taken as it is."""
+CAUTION = 3.0
+"""Times the spread of the results, where there is no such order."""
 _SAFETY = 1.25
-_CAUTION = 3.0
 
 
 @dataclass(frozen=True)
@@ -69,15 +71,15 @@ def extrapolate(values: Sequence[float]) -> Extrapolation:
     if spread == 0:
         return Extrapolation(orders, finest, 0.0, "converges")
     if math.isnan(order):
-        return Extrapolation(orders, math.nan, _CAUTION * spread, "oscillates")
+        return Extrapolation(orders, math.nan, CAUTION * spread, "oscillates")
     if order <= 0:
-        return Extrapolation(orders, math.nan, _CAUTION * spread, "diverges")
-    if _TRUSTED[0] <= order <= _TRUSTED[1]:
+        return Extrapolation(orders, math.nan, CAUTION * spread, "diverges")
+    if TRUSTED[0] <= order <= TRUSTED[1]:
         correction = last / (2**order - 1)
         return Extrapolation(orders, finest + correction, _SAFETY * abs(correction), "converges")
     # A low order throws the limit far off, a high one flatters: the methods' own are one to two.
     correction = last / (2 ** (1 if order < 1 else 2) - 1)
-    return Extrapolation(orders, finest + correction, _CAUTION * spread, "order not settled")
+    return Extrapolation(orders, finest + correction, CAUTION * spread, "order not settled")
 
 
 def extrapolate_means(draws: FloatArray) -> Extrapolation | None:
