@@ -52,7 +52,7 @@ def warn_at_end(setup: Setup, solver: Solver) -> None:
 
 def _blend(setup: Setup, step: float) -> Iterator[str]:
     kind, alpha = setup.method.blend
-    if kind != "alpha":
+    if setup.method.transfer != "flip" or kind != "alpha":
         return
     scene = setup.scene
     moment = second_moment(setup.method.shape, scene.spacing / 2, cell=scene.cell)
