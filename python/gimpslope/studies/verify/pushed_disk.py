@@ -25,6 +25,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from .order import observed_order
 from .problem import Check, FloatArray, Outcome, Problem
 
 COHESION, PRESSURE = 10e3, 200e3  # Pa
@@ -110,7 +111,7 @@ def check_limits(
         load = float(np.mean([one.limit for one in pushes[disk.label, count]]))
         wider = (load / exact - 1) * count / 2
         if checks:
-            order = math.log2((before - exact) / (load - exact))
+            order = observed_order(before - exact, load - exact)
         checks += [
             Check(
                 f"{at}: load / (c D)",
