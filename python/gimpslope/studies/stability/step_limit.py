@@ -179,15 +179,14 @@ def _fails(found: dict[Case, Limits]) -> list[Check]:
             )
         )
     last = [of.elastic.min() for case, of in found.items() if case.scheme == "usl"]
-    if last:
-        checks.append(
-            Check.at_most(
-                "smallest limit, USL",
-                bound=0.71,
-                got=float(min(last)),
-                why="2 / sqrt(2 x 4): published 0.08 to 0.71 for two points a cell, GIMP",
-            )
+    checks.append(
+        Check.at_most(
+            "smallest limit, USL",
+            bound=0.71,
+            got=float(min(last)),
+            why="2 / sqrt(2 x 4): published 0.08 to 0.71 for two points a cell, GIMP",
         )
+    )
     return checks
 
 
