@@ -54,6 +54,7 @@ def told(at: Any, setup: gs.Setup, solver: gs.Solver | None = None) -> list[str]
         (scene(), QUIET, []),
         (scene(), gs.Method(alpha=0.5), ["blend"]),
         (scene(), gs.Method(viscosity=10.0), []),
+        (scene(), gs.Method(transfer="apic"), []),
         (scene(), gs.Method(transfer="xpic"), []),
         (scene(replace(SOIL, cone="outer")), QUIET, ["cones"]),
         (scene(replace(SOIL, cone="outer", friction=45)), QUIET, ["cones"]),

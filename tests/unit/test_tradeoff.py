@@ -9,6 +9,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain
 from pathlib import Path
 from typing import Any, get_args
 
@@ -19,7 +20,7 @@ from gimpslope.method import DomainUpdate, Precision, Scheme
 from gimpslope.studies import tradeoff
 from gimpslope.studies.tradeoff import pareto, problems, rows, summary, words
 from gimpslope.studies.tradeoff.measure import Measured, measured, missing, sweep
-from gimpslope.studies.tradeoff.plan import Case, Plan, cases, plan
+from gimpslope.studies.tradeoff.plan import Case, Plan, alone, cases, every, is_allowed, plan
 
 BAR = problems.PROBLEMS["bar"]
 LONGER = (("courant", 0.8),)
@@ -58,6 +59,21 @@ def test_parameters_that_exclude_each_other_are_left_out() -> None:
     assert cases(nonsense) == [Case("bar", cell) for cell in BAR.cells] + [
         case for case in cases(nonsense) if case.cell in BAR.fine
     ]
+
+
+HATS_WITH_APIC = {"shape": "linear", "transfer": "apic", "courant": 0.8}
+
+
+@pytest.mark.parametrize("problem", problems.PROBLEMS.values(), ids=problems.PROBLEMS)
+def test_nothing_else_is_left_out(problem: problems.Problem) -> None:
+    wanted = [*(problem.only or [*every(), *alone(longer=True)]), *chain(*problem.dear.values())]
+    refused = [
+        changes
+        for changes in wanted
+        if not is_allowed(Case(problem.name, problem.cells[0], tuple(changes.items())))
+    ]
+    told = [{name: one for name, one in each.items() if one is not None} for each in refused]
+    assert told == ([] if problem.only else [HATS_WITH_APIC])
 
 
 def test_sweep_in_rounds_that_goes_on_where_it_was_stopped(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import Self
 
 
 class Stopwatch:
-    """Core-seconds spent in its `with` blocks, by all threads of this process."""
+    """Core-seconds spent in its `with` blocks: processor time of all threads of this process."""
 
     def __init__(self) -> None:
         self.core_seconds = 0.0

@@ -31,24 +31,9 @@ GAP = 0.01  # strain by which soil is drawn apart and closed again
 def run(full: bool) -> Findings:
     """Trial stresses with shear and ever more tension, and a gap that opens and closes."""
     tension = np.linspace(0.0, 3 * APEX, 301 if full else 61)
-    naive = along_cone(tension)
     mean, shear = returned(tension)
     beyond = tension > APEX * (1 + 1e-9)
     fails = [
-        Check.near(
-            "return along the cone at three times the apex: sqrt(J2), c",
-            expected=-2 * _xi(),
-            got=float(naive[-1]) / COHESION,
-            within=1e-9,
-            why="xi c - eta p is -2 xi c there: the shear stress comes out reversed",
-        ),
-        Check.at_least(
-            f"textbook apex at psi = {DILATIONS[-1]:g} degrees over the apex",
-            bound=1e3,
-            got=textbook_apex(DILATIONS[-1]) / APEX,
-            why="c xi / etabar over c cot(phi): tan(phi) / tan(psi) and more, without end as psi "
-            "falls",
-        ),
         Check.near(
             "every method here: mean stress once a gap is closed again, of -K e",
             expected=1.0,
@@ -76,11 +61,9 @@ def run(full: bool) -> Findings:
         (psi, textbook_apex(psi) / APEX, kernel_apex(psi) / APEX) for psi in DILATIONS
     ]
     columns = ("dilation angle, degrees", "textbook apex over c cot(phi)", "kernel")
-    return Findings(fails, stands, draw(tension, naive, shear), Table(columns, listed))
-
-
-def _xi() -> float:
-    return SOIL.cone_coefficients[1]
+    return Findings(
+        fails, stands, draw(tension, along_cone(tension), shear), Table(columns, listed)
+    )
 
 
 def along_cone(tension: FloatArray) -> FloatArray:

@@ -41,7 +41,7 @@ def chart(problem: Problem, measured: Sequence[Measured]) -> Figure:
     _numbers(ax, shown, best)
     failed = f", {len(measured) - len(shown)} more failed" * (len(measured) > len(shown))
     ax.set_title(f"{problem.title}: {len(shown)} cases{failed}")
-    ax.set(xlabel="core-seconds", ylabel="error (%)")
+    ax.set(xlabel="core-seconds (processor time)", ylabel="error (%)")
     _told(beside, shown, best)
     beside.legend(
         handles=_legend(problem, shown), loc="lower left", fontsize="small", ncols=2, frameon=False
@@ -66,7 +66,7 @@ def overview(by_problem: ByProblem) -> Figure:
     for ax in panels[len(by_problem) :]:
         ax.set_axis_off()
     for ax in panels[max(0, len(by_problem) - _COLUMNS) : len(by_problem)]:
-        ax.set_xlabel("core-seconds")
+        ax.set_xlabel("core-seconds (processor)")
     panels[len(by_problem)].legend(handles=[*_shape_handles(), *_line_handles()], loc="center")
     return figure
 

@@ -25,6 +25,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from .order import observed_order
 from .problem import Check, FloatArray, Outcome, Problem
 
 ComplexArray = npt.NDArray[np.complexfloating]
@@ -160,7 +161,7 @@ def check_size(
         at = f"{disk.label}, h = a/{count}, places: {len(found)}"
         share = float(np.mean(found))
         if checks:
-            order = math.log2((before - 1) / (share - 1))
+            order = observed_order(before - 1, share - 1)
         checks += [
             Check(
                 f"{at}: compliance that the disk takes, over exact",
@@ -197,7 +198,7 @@ def check_stress(
         larger = Field.around(RADIUS * (1 + disk.larger[2] / count), EDGE, PULL)
         error = float(np.mean([difference(plate, exact) for plate in found]))
         if checks:
-            order = math.log2(before / error)
+            order = observed_order(before, error)
         checks.append(
             Check.at_most(
                 f"{disk.label}, h = a/{count}, places: {len(found)}: "

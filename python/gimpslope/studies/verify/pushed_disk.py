@@ -25,6 +25,7 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from .order import observed_order
 from .problem import Check, FloatArray, Outcome, Problem
 
 COHESION, PRESSURE = 10e3, 200e3  # Pa
@@ -110,7 +111,7 @@ def check_limits(
         load = float(np.mean([one.limit for one in pushes[disk.label, count]]))
         wider = (load / exact - 1) * count / 2
         if checks:
-            order = math.log2((before - exact) / (load - exact))
+            order = observed_order(before - exact, load - exact)
         checks += [
             Check(
                 f"{at}: load / (c D)",
@@ -166,9 +167,11 @@ def check_rate(count: int, found: Push) -> list[Check]:
     """Neither inertia nor viscosity add to the load."""
     slow = push(RIGID, count, PLACES[0], slower=2.0)
     blended = push(RIGID, count, PLACES[0], alpha=0.01)
-    # Viscosity of the blend alpha h2 (1/6 + lp2 / (3 h2)) / dt, see `gimpslope.Method`, lp = h / 4,
-    # dt = 0.4 h / wave speed, in a band one cell wide that shears by the speed of the disk.
-    viscous = 0.01 * (1 / 6 + 1 / 48) / 0.4 * CLAY.density * CLAY.wave_speed * PATH / DURATION
+    # Viscosity of the blend, see `gimpslope.Method`, at a step of 0.4 h / wave speed, in a band one
+    # cell wide that shears by the speed of the disk.
+    cell = DIAMETER / count
+    nu = 0.01 * gs.kernel.second_moment("ugimp", cell / 4, cell=cell) * CLAY.wave_speed / 0.4 / cell
+    viscous = nu * CLAY.density * PATH / DURATION / cell
     return [
         Check.near(
             f"rigid, h = D/{count}: load at half the speed, share",
