@@ -169,7 +169,8 @@ double Bodies::potential_energy(double gravity_x, double gravity_y) const {
 double Bodies::momentum() const {
   double sum = 0.0;
   for (std::size_t b = 0; b < states_.size(); ++b)
-    sum += mass_[b] * std::hypot(states_[b].velocity[0], states_[b].velocity[1]);
+    sum += mass_[b] * std::hypot(states_[b].velocity[0], states_[b].velocity[1]) +
+           inertia_[b] * std::abs(states_[b].spin) / radius_[b];
   return sum;
 }
 
@@ -227,8 +228,9 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes, double travel) 
 
 std::int64_t Bodies::bytes() const {
   return sizeof(double) * (4 * given_.size() + shares_.size() + near_.size()) +
-         sizeof(BodyNode) * nodes_.size() +
-         sizeof(std::int32_t) * (2 * given_.size() + owner_.size());
+         sizeof(BodyNode) * nodes_.size() + sizeof(Meeting) * meetings_.size() +
+         sizeof(Contact) * contacts_.size() +
+         sizeof(std::int32_t) * (2 * given_.size() + owner_.size() + pairs_.capacity());
 }
 
 }  // namespace gimpslope

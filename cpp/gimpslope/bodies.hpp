@@ -47,8 +47,8 @@ class Bodies {
 
   double kinetic_energy() const;                                      // J/m
   double potential_energy(double gravity_x, double gravity_y) const;  // J/m
-  double momentum() const;                                            // sum of sizes, N s/m
-  double largest_speed(const Points& points) const;                   // of a point, m/s
+  double momentum() const;                           // sum of sizes, angular ones over radii, N s/m
+  double largest_speed(const Points& points) const;  // of a point, m/s
 
   /// What the sweeps see, for points as they lie in storage, a grid of so many nodes, and bodies
   /// whose points go no farther than `travel` before the next view, m.

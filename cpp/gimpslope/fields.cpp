@@ -162,7 +162,10 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
     for (int c = 0; c < f.components; ++c)
       f.data[k * f.point_stride + c * f.component_stride] =
           values[static_cast<std::size_t>(f.components) * points_.number[k] + c];
-  if (name == "velocity") points_.affine.fill(0.0);  // that of the velocities before
+  if (name == "velocity") {
+    points_.affine.fill(0.0);  // that of the velocities before
+    stopped_ = false;
+  }
   if (name == "position") bodies_.take_shape(points_, half_length_, cell());
   if (name == "position" || name == "velocity") bodies_.take_motion(points_);
   single_loaded_ = energies_known_ = false;

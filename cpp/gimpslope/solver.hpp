@@ -74,7 +74,8 @@ class Solver {
   Ledger ledger() const;  // of a method that keeps one
 
   /// Forces that were left when kinetic damping last stopped all motion: the sum of their sizes at
-  /// the nodes and on rigid bodies, N/m. Infinite before that.
+  /// the nodes and on rigid bodies, with the moments on these over their radii, N/m. Infinite
+  /// before that.
   double unbalanced_force() const { return unbalanced_force_; }
 
   /// Fields by name: position, velocity, stress (xx, yy, zz, xy), volume, mass, plastic_strain,

@@ -104,6 +104,7 @@ struct BodyNode {
   double normal[2];  // of the body's surface, outwards
   double free[2];    // velocity of the soil after the forces, as if there were no body, m/s
   double taken[2];   // impulse that the soil takes from the body, N s/m
+  double slip;       // its direction along the surface, 1 or -1, of soil that slips
   Meeting meeting;   // in the step before, then in this one
   bool damped;       // alone, not with the body
 };

@@ -383,7 +383,8 @@ class Solver:
     @property
     def unbalanced_force(self) -> float:
         """The sum of the sizes of the forces, those of walls included, that were left at the nodes
-        and on rigid stones when kinetic damping last stopped all motion, N/m; infinite before."""
+        and on rigid stones, with moments on these over their radii, when kinetic damping last
+        stopped all motion, N/m; infinite before."""
         return self._core.unbalanced_force
 
     @property

@@ -46,7 +46,7 @@ class Settling(Record):
     Each criterion that is given must hold. Where none is, it is `unbalanced` = 2e-3 with kinetic
     damping, `ratio` = 1e-6 with local. The first asks for a static solution, whose time means
     nothing: it takes the longest steps. `Gravity(0.5)` with `Settling(ratio=1e-6)` is loading in
-    time; it takes two to eight times as many steps, and the slide that follows has the same figures
+    time; it takes two to six times as many steps, and the slide that follows has the same figures
     to 0.5 %.
 
     Parameters

@@ -86,6 +86,7 @@ class Interface:
         self.motion_at[:, :, 2] = quarter_turn(arm)
         self.inertia = np.diag([body.mass, body.mass, body.inertia])
         self.taken = np.zeros((len(place), 2))
+        self.slip = np.zeros(len(place))  # its direction along the surface where soil slips
         self.settle()
 
     def settle(self) -> None:
@@ -96,9 +97,12 @@ class Interface:
         for settling in range(SETTLINGS):
             apart = self.free - self.motion_at @ motion
             meeting = self._meeting(apart)
-            settled = settling > 0 and bool((meeting == self.meeting).all())
-            self.meeting = meeting
-            answer = self._answer(apart)
+            slip = np.where(meeting == SLIPPING, np.sign(cross(self.normal, apart)), 0.0)
+            settled = settling > 0 and bool(
+                (meeting == self.meeting).all() and (slip == self.slip).all()
+            )
+            self.meeting, self.slip = meeting, slip
+            answer = self._answer()
             self.taken = -np.einsum("kij,kj->ki", answer, apart)
             if settled:
                 break
@@ -132,11 +136,11 @@ class Interface:
         met = np.where(into <= 0, APART, np.where(along > rough * into, SLIPPING, STUCK))
         return np.asarray(np.where(self.meeting == WELDED, WELDED, met))
 
-    def _answer(self, apart: Array) -> Array:
+    def _answer(self) -> Array:
         """The matrices (k, 2, 2) that turn the approach of the soil into the impulse it takes."""
         across, rough = quarter_turn(self.normal), self.body.friction
         assert rough is not None
-        pushed = self.normal - np.sign(cross(self.normal, apart))[:, None] * rough * across
+        pushed = self.normal - self.slip[:, None] * rough * across
         slipping = np.einsum("ki,kj->kij", pushed, self.normal)
         factor = np.where((self.meeting == SLIPPING)[:, None, None], slipping, np.eye(2))
         factor = np.where((self.meeting == APART)[:, None, None], 0.0, factor)

@@ -1,6 +1,7 @@
 """The NumPy twin against theory, without the compiled kernel."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from reference import Material, Reference
+from reference.bodies import quarter_turn
 from reference.drucker_prager import (
     cone,
     elastic_increment,
@@ -17,6 +19,7 @@ from reference.drucker_prager import (
     rotate,
     tension_limit,
 )
+from reference.interface import APART, SLIPPING, Interface
 from reference.shapes import hat, weights
 from reference.walls import hold_momentum, hold_velocity
 
@@ -439,3 +442,23 @@ def test_splines_meet_linear_motion_up_to_the_walls() -> None:
     at_left, at_top = nodes[:, 0] == 0.0, np.isclose(nodes[:, 1], 5 * H)
     np.testing.assert_allclose(s[:3][:, at_left].sum(axis=1), 1.0)
     np.testing.assert_allclose(s[3:6][:, at_top].sum(axis=1), 1.0)
+
+
+@pytest.mark.parametrize("seed", [31, 124, 126, 142, 260])
+def test_friction_opposes_the_slip_that_is_left(seed: int) -> None:
+    """Soil that runs at random into an ellipse turns about on its way to where it settles."""
+    random = np.random.default_rng(seed)
+    count, axes = random.integers(2, 9), np.array([1.0, 0.5])
+    turn = random.uniform(0, 2 * np.pi, count)
+    place = axes * np.column_stack([np.cos(turn), np.sin(turn)])
+    normal = place / axes**2
+    normal /= np.hypot(*normal.T)[:, None]
+    body: Any = SimpleNamespace(centre=np.zeros(2), mass=1.0, inertia=axes @ axes / 4, friction=0.1)
+    whole: Any = SimpleNamespace(velocity=np.zeros(2), spin=0.0)
+    mass, free = random.uniform(0.02, 0.5, count), random.standard_normal((count, 2))
+    found = Interface(body, whole, place, normal, np.full(count, APART), mass, free)
+    left = free - found.motion_at @ np.append(whole.velocity, whole.spin)
+    slips = found.meeting == SLIPPING
+    across = quarter_turn(normal)
+    work = np.sum(left * across, axis=1) * np.sum(found.taken * across, axis=1)
+    assert slips.any() and (work[slips] < 0).all()

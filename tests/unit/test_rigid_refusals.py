@@ -112,7 +112,8 @@ def test_density_is_refused(density: Any) -> None:
 @pytest.mark.parametrize("angle", [-1.0, 90.0, float("nan"), "rough"])
 @pytest.mark.parametrize("name", ["friction", "mutual_friction"])
 def test_friction_is_refused(name: str, angle: Any) -> None:
-    assert_refused(lambda: gs.Rigid(2600.0, **{name: angle}), "friction", str(angle).split(".")[0])
+    with pytest.raises((ValueError, TypeError), match=rf"^{name} must be "):
+        gs.Rigid(2600.0, **{name: angle})
 
 
 def test_refused_to_step_by_a_wave_speed_where_no_wave_runs() -> None:

@@ -205,3 +205,17 @@ def test_clock_and_impulses_start_anew() -> None:
     assert (after.impulse == 0).all() and (after.angular_impulse == 0).all()
     for name in ("centre", "angle", "velocity", "spin"):
         np.testing.assert_array_equal(getattr(after, name), getattr(before, name))
+
+
+def test_bytes_count_the_pairs_of_stones_that_are_near_each_other() -> None:
+    """Of 200 stones of a point each, in a row or all but two of them in its middle."""
+    count = 200
+    row, heap = np.linspace(0.0, 100.0, count), 50.0 + 1e-4 * np.arange(count)
+    heap[0], heap[-1] = row[0], row[-1]
+    taken = []
+    for x in (row, heap):
+        place = np.column_stack([x, np.zeros(count)])
+        stones = [(place[k : k + 1], ROCK.density, 0, k) for k in range(count)]
+        given = points(SPACING, *stones)
+        taken.append(gs.Solver(given, [ROCK], cell=CELL, method=gs.Method(time_step=1e-3)).bytes)
+    assert taken[1] - taken[0] > 8 * (count - 2) * (count - 3) / 2

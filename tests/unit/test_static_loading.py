@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from coarse_slope import METHOD, SLOPE, recording, simulate
-from rigid_scene import bodies
+from rigid_scene import ANGLE_IRON, SPACING, bodies, moments, thrown, turning
 
 import gimpslope as gs
 from gimpslope.setup import Setup
@@ -40,6 +40,33 @@ def test_unbalanced_force_of_what_is_thrown_is_its_weight(stone: gs.Material) ->
     while solver.unbalanced_force == np.inf and solver.steps < 10:
         solver.step()
     assert solver.unbalanced_force == pytest.approx(9.81 * solver.mass.sum(), rel=1e-4)
+
+
+def turned_against_its_spin() -> gs.Solver:
+    """A rigid stone that kinetic damping has just stopped, with forces that turn it alone."""
+    solver = thrown(ANGLE_IRON, 0.0, 0.0)
+    solver.velocity = turning(ANGLE_IRON, -1.0)
+    solver.body_force = turning(ANGLE_IRON, 50.0)
+    solver.set_damping(kinetic=True)
+    while solver.velocity.any():
+        solver.step()
+    return solver
+
+
+def test_moment_on_a_rigid_stone_counts_as_a_force_at_its_edge() -> None:
+    solver = turned_against_its_spin()
+    arm = solver.position - solver.position.mean(axis=0)
+    solver.step()
+    radius = np.hypot(*arm.T).max() + SPACING / np.sqrt(2)
+    moment = solver.mass @ moments(arm, turning(ANGLE_IRON, 50.0))
+    assert solver.unbalanced_force == pytest.approx(moment / radius, rel=1e-9)
+
+
+def test_velocities_that_are_given_are_not_taken_for_a_force() -> None:
+    solver = turned_against_its_spin()
+    solver.velocity = np.tile([1.0, 0.0], (len(solver), 1))
+    solver.step()
+    assert solver.unbalanced_force == np.inf
 
 
 def test_stop_ends_all_motion_and_books_it() -> None:

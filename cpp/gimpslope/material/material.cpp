@@ -42,8 +42,11 @@ void Material::check() const {
   require(density > 0.0 && density < kInfinity, "density", density,
           "positive and finite, in kg/m3");
   if (law == LawKind::rigid) {
-    for (const double angle : {interface_friction.value_or(0.0), mutual_friction})
-      require(angle >= 0.0 && angle < 90.0, "friction", angle, "in [0, 90), in degrees");
+    const auto require_angle = [](const char* name, double angle) {
+      require(angle >= 0.0 && angle < 90.0, name, angle, "in [0, 90), in degrees");
+    };
+    require_angle("friction", interface_friction.value_or(0.0));
+    require_angle("mutual_friction", mutual_friction);
     return;
   }
   require(young > 0.0 && young < kInfinity, "young", young, "positive and finite, in Pa");

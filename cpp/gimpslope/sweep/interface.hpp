@@ -68,8 +68,8 @@ inline Meeting meeting_of(const BodyNode& node, const Pair& apart, double fricti
   const Pair normal(node.normal[0], node.normal[1]);
   const double into = -(apart * normal).sum();
   if (into <= 0.0) return Meeting::apart;
-  const double along = apart[1] * normal[0] - apart[0] * normal[1];
-  return std::fabs(along) > friction * into ? Meeting::slipping : Meeting::stuck;
+  return std::fabs(cross(node.normal, apart)) > friction * into ? Meeting::slipping
+                                                                : Meeting::stuck;
 }
 
 /// The matrix that turns the approach of the soil into the impulse that it takes: its mass times
@@ -80,14 +80,13 @@ struct Answer {
   Pair of(const Pair& v) const { return {xx * v[0] + xy * v[1], yx * v[0] + yy * v[1]}; }
 };
 
-inline Answer answer_of(const BodyNode& node, const Pair& apart, double friction) {
+inline Answer answer_of(const BodyNode& node, double friction) {
   Answer a;
   if (node.meeting == Meeting::apart) return a;
   a.xx = a.yy = node.mass;
   if (node.meeting != Meeting::slipping) return a;
   const double nx = node.normal[0], ny = node.normal[1];
-  const double along = apart[1] * nx - apart[0] * ny;
-  const double rub = along > 0.0 ? -friction : friction;
+  const double rub = -node.slip * friction;
   const double x = node.mass * (nx - rub * ny), y = node.mass * (ny + rub * nx);
   return {x * nx, x * ny, y * nx, y * ny};
 }
@@ -126,8 +125,8 @@ inline void add_answer(const Answer& m, const BodyNode& node, double (&a)[3][3],
 }
 
 /// The impulses between a body and the soil at its nodes, and its velocity with them: that velocity
-/// tells how the soil meets it, and the impulses, linear in it, what it is; in turn until the
-/// meetings stay (a semi-smooth Newton method).
+/// tells how the soil meets it, and the impulses, linear in it, what it is; in turn until meetings
+/// and directions of slip stay (a semi-smooth Newton method).
 inline void settle_nodes(const BodiesView& all, int body) {
   HeldBody& held = all.held[body];
   const double mass = all.mass[body], inertia = all.inertia[body], friction = all.friction[body];
@@ -149,9 +148,11 @@ inline void settle_nodes(const BodiesView& all, int body) {
       BodyNode& node = nodes[k];
       const Pair off = apart(node, now);
       const Meeting meeting = meeting_of(node, off, friction);
-      same = same && meeting == node.meeting;
+      const double slip = cross(node.normal, off) > 0.0 ? 1.0 : -1.0;
+      same = same && meeting == node.meeting && (meeting != Meeting::slipping || slip == node.slip);
       node.meeting = meeting;
-      const Answer m = answer_of(node, off, friction);
+      node.slip = slip;
+      const Answer m = answer_of(node, friction);
       set(node.taken, -m.of(off));
       const Pair taken(node.taken[0], node.taken[1]);
       for (int c = 0; c < 2; ++c) held.taken[c] += taken[c];
