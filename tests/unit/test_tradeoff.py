@@ -192,6 +192,8 @@ def test_page_claims_nothing_below_what_is_known() -> None:
         in text
     )
     assert "* **2 %**: cannot be told, for the answer is known to 3 %." in text
+    assert "* **2 %**: cannot be told" in page([made(0.001, 1.0)], known_to=0.02)
+    assert "* **2 %**: cannot be told of any of the problems." in text
 
 
 def test_words() -> None:

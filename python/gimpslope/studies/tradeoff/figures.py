@@ -61,6 +61,8 @@ def overview(by_problem: ByProblem) -> Figure:
         _front(ax, shown, front(shown))
         _finish(ax, problem, shown)
         ax.set_title(problem.title, fontsize="medium")
+        if len(problem.models) > 1:
+            ax.legend(handles=_handles(problem.models), loc="lower left", fontsize="x-small")
     for ax in panels[::_COLUMNS]:
         ax.set_ylabel("error (%)")
     for ax in panels[len(by_problem) :]:

@@ -39,7 +39,7 @@ def choices(by_problem: ByProblem, target: float) -> tuple[list[Choice], int]:
     costs: dict[Changed, dict[str, float]] = {}
     reached_by_any = []
     for problem, some in by_problem:
-        best = None if problem.known_to > target else cheapest(some, target)
+        best = None if problem.known_to >= target else cheapest(some, target)
         if best is None:
             continue
         reached_by_any.append(problem.title)

@@ -73,11 +73,13 @@ def _groups(by_problem: ByProblem) -> dict[str, ByProblem]:
 def _overall(by_problem: ByProblem, target: float) -> str:
     found, of_all = choices(by_problem, target)
     aim = f"* **{words.percent(target)}**: "
+    known = sum(problem.known_to < target for problem, _ in by_problem)
+    if known == 0:
+        return f"{aim}cannot be told of any of the problems.\n"
     if not found:
         return f"{aim}no case of any problem reaches it.\n"
     best, default = found[0], next(one for one in found if not one.changes)
     told = [_choice(one, of_all) for one in dict.fromkeys((best, default))]
-    known = sum(problem.known_to <= target for problem, _ in by_problem)
     return f"{aim}{'; '.join(told)}. It can be told of {known} of {len(by_problem)} problems.\n"
 
 
@@ -127,7 +129,7 @@ def _of_problem(problem: Problem, some: Sequence[Measured]) -> str:
 
 def _sentence(problem: Problem, some: Sequence[Measured], target: float) -> str:
     aim = f"**{words.percent(target)}**: "
-    if problem.known_to > target:
+    if problem.known_to >= target:
         return f"{aim}cannot be told, for the answer is known to {words.percent(problem.known_to)}."
     errors = held(some)
     best = cheapest(some, target)
