@@ -18,7 +18,7 @@ from gimpslope.planning.pilot import fly
 from gimpslope.planning.problem import pose
 from gimpslope.studies import reference
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.study
 
 PEAK = ("peak_kinetic_energy", "time_of_peak", "speed_at_peak")
 METHOD = reference.method(ledger=False)
