@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 import time
+import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from multiprocessing.process import BaseProcess
@@ -104,13 +105,20 @@ def _run(planned: Planned) -> None:
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-        planned.run(progress=False)
+        with warnings.catch_warnings(record=True) as told:
+            planned.run(progress=False)
+        for warning in told:
+            _tell(planned, warning.message)
     except KeyboardInterrupt:
         return
     except Exception as error:
-        print(f"gimpslope: {planned.path}: {error}", file=sys.stderr)
+        _tell(planned, error)
     finally:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _tell(planned: Planned, what: object) -> None:
+    print(f"gimpslope: {planned.path}: {what}", file=sys.stderr)
 
 
 def _end_with_parent() -> None:
