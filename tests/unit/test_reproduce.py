@@ -226,6 +226,14 @@ def test_a_run_that_fails_is_named_and_the_others_are_finished(tmp_path: Path) -
     assert gs.open(tmp_path / "good.h5").status == "finished"
 
 
+def test_a_warning_of_a_run_is_told_with_its_name(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    literal = reference.setup(reading="literal", cell=0.8, duration=0.05)
+    parallel.run_all([planned.plan(tmp_path / "a.h5", literal)], jobs=1, progress=False)
+    assert capfd.readouterr().err.startswith(f"gimpslope: {tmp_path / 'a.h5'}: cones: ")
+
+
 def test_readings_and_seeds_are_planned_without_files(tmp_path: Path) -> None:
     slopes = reproduce.plan(tmp_path / "new", seeds=(1, 2), cell=0.2).slopes
     assert [slope.reading for slope in slopes] == ["identified"] * 4 + ["literal"] * 4
