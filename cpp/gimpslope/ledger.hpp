@@ -28,8 +28,8 @@
 //   integration  V w(ds) + dt (internal force + m g) . dv / 2
 //                - (V s - (V s-)) : (strain increment)
 //
-// With XPIC the points change by v+ - v' and keep what walls hold of v-: m (v-^2 - v'^2) / 2 goes to
-// transfer, where it comes back from, and not to friction or impact.
+// With XPIC the points change by v+ - v' and keep what walls hold of v-: m (v-^2 - v'^2) / 2 goes
+// to transfer, where it comes back from, and not to friction or impact.
 #pragma once
 
 #include "instruction_set.hpp"
