@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import gimpslope as gs
-from gimpslope import cli, planning
+from gimpslope import planning
 from gimpslope.analysis import smooth_peak
 from gimpslope.energy import Energy
 from gimpslope.planning import Estimate, blend, grids, savings, search, stones
@@ -19,7 +19,7 @@ from gimpslope.planning.cost import seconds
 from gimpslope.planning.pilot import Pilot
 from gimpslope.planning.problem import pose
 from gimpslope.planning.tail import NO_TAIL, tail
-from gimpslope.studies import reference, within
+from gimpslope.studies import reference
 
 CELLS = (0.8, 0.4, 0.2)
 PEAK = ("peak_kinetic_energy", "time_of_peak")
@@ -369,101 +369,3 @@ def test_stones_that_share_nodes_are_not_promised() -> None:
 def test_refused(small: gs.Scene, given: dict[str, object], message: str) -> None:
     with pytest.raises((TypeError, ValueError), match=message):
         gs.plan(**({"scene": small} | given))  # type: ignore[arg-type]
-
-
-SCENE = """
-cell = 0.8
-[outline]
-height = 4.5
-crest = 1
-[materials.soil]
-density = 1800
-young = 30e6
-poisson = 0.33
-friction = 22
-cohesion = 1e3
-[stages.slide]
-duration = 4
-[method]
-viscosity = 0.2
-"""
-
-
-def test_command(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("small.toml").write_text(SCENE)
-    words = [
-        "plan",
-        "small.toml",
-        "--error",
-        "0.5",
-        "--budget",
-        "0.1",
-        "--quantities",
-        "time_of_peak",
-    ]
-    assert cli.main([*words, "--dry-run"]) == 0
-    shown = capsys.readouterr()
-    assert "time of the peak" in shown.out and "pilot: cell" in shown.err
-    assert not Path("small_planned.h5").exists()
-    assert cli.main([*words, "--quiet", "--output", "fine.h5"]) == 0
-    shown = capsys.readouterr()
-    assert "by the estimate" in shown.out and shown.err == ""
-    assert gs.open("fine.h5").status == "finished"
-    assert cli.main([*words, "--output", "fine.h5"]) == 2
-    assert "--output must be a new file" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("plan clay", "SCENE must be one of"),
-        ("plan missing.toml", "missing.toml"),
-        ("plan missing.toml --seed 2", "--seed must be left out"),
-        ("plan soil --error 2", "error must be"),
-        ("plan soil --budget -1", "budget must be"),
-        ("plan soil --output plan.txt", "--output must be a file that ends in .h5"),
-        ("reproduce --error 0", "error must be"),
-        ("reproduce --error 0.1 --cell 0.2", "--cell must be left out with --error, got 0.2"),
-        ("reproduce --error 0.1 --convergence", "--convergence must be left out"),
-        ("reproduce --error 0.1 --stone-friction 20", "--stone-friction must be left out"),
-        ("reproduce --error 0.1 --seed 1 2", "--seed must be a single one with --error"),
-        ("reproduce --error 0.1 --reading literal identified", "--reading must be a single one"),
-        ("reproduce --budget 60", "--budget must be given with --error"),
-    ],
-)
-def test_what_commands_refuse(
-    words: str,
-    message: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert cli.main(words.split()) == 2
-    assert message in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
-def test_page_of_the_study(tmp_path: Path) -> None:
-    names = ("peak_kinetic_energy", "time_of_peak")
-    of_peak = Estimate(names[0], CELLS, (96e3, 130e3, 147e3))
-    of_time = Estimate(names[1], CELLS, (1.7, 1.6, math.nan))
-    slopes = tuple(
-        within.Slope(name, (of_peak, of_time), True, False, 400, 9000, 1.5, (1.0, 2.0), ("why",))
-        for name in reference.SLOPES
-    )
-    found = within.Study(planning.Target(0.1, names), "identified", 1, slopes, 12.0)
-    within.write(found, tmp_path)
-    page = (tmp_path / "within.md").read_text()
-    assert "| peak kinetic energy | 164 ± 21 kJ/m, 13.0 % (147) |" in page
-    assert "not reached" in page and "1.0 + 2.0" in page and "- why" in page
-    assert '"error": null' in (tmp_path / "within.json").read_text()
-
-
-def test_study_does_not_replace_runs(tmp_path: Path) -> None:
-    (tmp_path / "soil.h5").write_text("precious")
-    with pytest.raises(FileExistsError, match=r"soil\.h5"):
-        within.study(planning.Target(0.1), tmp_path)
