@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import Any, Literal, get_args
 
 from . import _check, _core
 from ._record import Record
+from .materials import DruckerPrager, Material
 
 Shape = str  # one of `gimpslope.kernel.shapes()`
 Scheme = Literal["usf", "usl", "musl"]
@@ -64,9 +66,10 @@ class Method(Record):
         of the strain rate) or "exponential" exp(tr(L) dt)
     volumetric_strain : of a point: its own, "point", or the mean over the points of its cell,
         "cell_average", with the mean stress in the forces to match: the mean dilatation of B-bar
-        (Hughes 1980), against locking where the volume hardly changes, as in undrained clay. Not
+        (Hughes 1980), against locking where the volume hardly changes, as in soil that flows. Not
         for large elastic motions: a point that crosses into another cell meets another mean stress.
-        The mean is over all deformable materials in the cell
+        The mean is over all deformable materials in the cell. None: "cell_average" where any
+        material of the scene yields, else "point", which `gimpslope tradeoff` shows to pay
     precision : in which the points are stepped: "double", or "single", where places count from a
         node near each point, and the grid and all that is computed on the way stays in double.
         Their state is given out in double and kept beside. "single" tells what the digits are
@@ -92,7 +95,7 @@ class Method(Record):
     time_step: float | None = None
     domain_update: DomainUpdate | None = None
     volume_update: VolumeUpdate = "linear"
-    volumetric_strain: VolumetricStrain = "point"
+    volumetric_strain: VolumetricStrain | None = None
     precision: Precision = "double"
     threads: int = 1
     allow_unstable: bool = False
@@ -103,7 +106,8 @@ class Method(Record):
         _check.one_of("scheme", self.scheme, get_args(Scheme))
         _check.one_of("transfer", self.transfer, get_args(Transfer))
         _check.one_of("volume_update", self.volume_update, get_args(VolumeUpdate))
-        _check.one_of("volumetric_strain", self.volumetric_strain, get_args(VolumetricStrain))
+        if self.volumetric_strain is not None:
+            _check.one_of("volumetric_strain", self.volumetric_strain, get_args(VolumetricStrain))
         _check.one_of("precision", self.precision, get_args(Precision))
         self._store(
             threads=_check.whole("threads", self.threads, 1),
@@ -134,6 +138,13 @@ class Method(Record):
     def has_domains(self) -> bool:
         """Whether points have domains, over which GIMP averages the shape functions."""
         return self.shape in GIMP
+
+    def of(self, materials: Iterable[Material]) -> Method:
+        """The method with what it leaves to the materials of a scene: volumetric_strain."""
+        if self.volumetric_strain is not None:
+            return self
+        yields = any(isinstance(material, DruckerPrager) for material in materials)
+        return replace(self, volumetric_strain="cell_average" if yields else "point")
 
     def to_core(self) -> dict[str, Any]:
         """The keyword arguments of the compiled solver that depend on the method."""

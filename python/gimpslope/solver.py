@@ -102,7 +102,7 @@ class Solver:
             stone=points.stone,
             walls=walls.to_core(_check.array("wall_positions", positions, (4,)).tolist()),
             instruction_set=_check.instance("instruction_set", instruction_set, str, "a name"),
-            **method.to_core(),
+            **method.of(materials).to_core(),
         )
         self._core.set_gravity(*_check.array("gravity", gravity, (2,)).tolist())
         if stress is not None:
@@ -132,7 +132,7 @@ class Solver:
             wall_positions=scene.wall_positions,
             origin=scene.origin,
             gravity=(0.0, -scene.gravity),
-            method=method,
+            method=(Method() if method is None else method).of(scene.materials),
             instruction_set=instruction_set,
         )
 

@@ -66,7 +66,10 @@ HATS_WITH_APIC = {"shape": "linear", "transfer": "apic", "courant": 0.8}
 
 @pytest.mark.parametrize("problem", problems.PROBLEMS.values(), ids=problems.PROBLEMS)
 def test_nothing_else_is_left_out(problem: problems.Problem) -> None:
-    wanted = [*(problem.only or [*every(), *alone(longer=True)]), *chain(*problem.dear.values())]
+    wanted = [
+        *(problem.only or [*every(problem), *alone(problem, longer=True)]),
+        *chain(*problem.dear.values()),
+    ]
     refused = [
         changes
         for changes in wanted

@@ -21,7 +21,7 @@ def limits(model: str, method: Method) -> list[Extrapolation]:
 
 
 def test_limits_of_the_slope_with_a_stone() -> None:
-    method = Method(viscosity=slopes.VISCOSITY, courant=0.8)
+    method = Method(viscosity=slopes.VISCOSITY, courant=0.8, volumetric_strain="point")
     cured = Method(viscosity=slopes.VISCOSITY, courant=0.8, volumetric_strain="cell_average")
     known = zip(problems.WITH_STONE, problems.UNCERTAINTY_WITH_STONE, strict=True)
     found = zip(limits("deformable", method), limits("rigid", cured), strict=True)

@@ -6,6 +6,7 @@ import math
 import numpy as np
 import pytest
 
+from gimpslope.materials import DruckerPrager
 from gimpslope.method import Method
 from gimpslope.stages import Gravity, Settling, Slide, Stages
 from gimpslope.walls import Coulomb, Fixed, Free, Roller, Walls
@@ -45,8 +46,26 @@ def test_walls_refuse_what_is_no_wall(side, value):
         Walls(**{side: value})
 
 
+SOIL = DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)
+
+
+@pytest.mark.parametrize(
+    ("materials", "strain"),
+    [
+        ([SOIL], "cell_average"),
+        ([SOIL.elastic()], "point"),
+        ([SOIL.elastic(), SOIL], "cell_average"),
+    ],
+)
+def test_strains_are_averaged_where_a_material_yields(materials, strain):
+    assert Method().of(materials).volumetric_strain == strain
+    for given in ("point", "cell_average"):
+        chosen = Method(volumetric_strain=given)
+        assert chosen.of(materials) == chosen
+
+
 def test_method_has_the_defaults_of_the_study():
-    assert Method().to_core() == {
+    assert Method().of([SOIL.elastic()]).to_core() == {
         "shape": "ugimp",
         "precision": "double",
         "scheme": "usf",

@@ -44,8 +44,8 @@ def add(commands: Commands) -> None:
         "--volumetric-strain",
         nargs="+",
         choices=get_args(VolumetricStrain),
-        default=["point"],
-        help="each model with each of them (default: point)",
+        default=[reference.VOLUMETRIC_STRAIN],
+        help="each model with each of them (default: point, as in the paper)",
     )
     parser.add_argument(
         "--seed", type=int, nargs="+", metavar="N", help="of the stones (default: 1)"

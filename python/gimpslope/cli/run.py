@@ -8,9 +8,10 @@ import os
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from .. import figures, scene_file
+from ..method import VolumetricStrain
 from ..recorder import Recorder
 from ..run import Run
 from ..setup import Setup
@@ -30,7 +31,7 @@ _OF_SLOPES: dict[str, Any] = {
     "stone_friction": None,
     "time_step": None,
     "courant": None,
-    "volumetric_strain": "point",
+    "volumetric_strain": reference.VOLUMETRIC_STRAIN,
 }
 """Options that only the slopes of the study have, with their defaults."""
 
@@ -64,7 +65,7 @@ def add(commands: Commands) -> None:
     step.add_argument("--courant", type=float, metavar="C", help="Courant number (default: 0.4)")
     of_slopes.add_argument(
         "--volumetric-strain",
-        choices=["point", "cell_average"],
+        choices=list(get_args(VolumetricStrain)),
         help="cell_average keeps soil from locking (default: point, as in the paper)",
     )
     parser.add_argument(

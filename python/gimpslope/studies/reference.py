@@ -74,6 +74,9 @@ may be six times longer; and not deforming at all."""
 
 _ROCK_DENSITY = 2400.0  # kg/m3
 
+VOLUMETRIC_STRAIN: VolumetricStrain = "point"
+"""The paper's, on whose grids soil locks; `Method` leaves it to the material."""
+
 RECORDING = Recording(
     snapshot_times=(0.5, 1.0, *(round(1.4 + 0.05 * k, 2) for k in range(15)), 3.5, 5.0, 10.0)
 )
@@ -163,9 +166,10 @@ def method(
     precision: Precision = "double",
     threads: int = 1,
     ledger: bool = True,
-    volumetric_strain: VolumetricStrain = "point",
+    volumetric_strain: VolumetricStrain = VOLUMETRIC_STRAIN,
 ) -> Method:
-    """uGIMP, USF and the reading's viscosity; a Courant number, or a time step in s."""
+    """uGIMP, USF, volume strains of the points and the reading's viscosity, as the paper has it
+    unless given otherwise; a Courant number, or a time step in s."""
     return Method(
         viscosity=_reading(reading).viscosity,
         courant=courant,
@@ -190,7 +194,7 @@ def setup(
     courant: float | None = None,
     time_step: float | None = None,
     threads: int = 1,
-    volumetric_strain: VolumetricStrain = "point",
+    volumetric_strain: VolumetricStrain = VOLUMETRIC_STRAIN,
 ) -> Setup:
     """All of a run of one of the four slopes, its slide of a duration in s; the rest as in `slope`
     and `method`."""

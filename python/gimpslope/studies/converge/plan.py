@@ -10,7 +10,7 @@ from types import MappingProxyType
 from typing import Any, NamedTuple
 
 from ... import _check
-from ...method import Method, VolumetricStrain
+from ...method import VolumetricStrain
 from ...recording import Recording
 from .. import planned, reference
 from ..planned import Planned
@@ -57,7 +57,7 @@ def plan(
     readings: Sequence[str] = tuple(reference.READINGS),
     stone_models: Sequence[str] = ("deformable",),
     stone_frictions: Sequence[float] = (),
-    volumetric_strains: Sequence[VolumetricStrain] = ("point",),
+    volumetric_strains: Sequence[VolumetricStrain] = (reference.VOLUMETRIC_STRAIN,),
     seeds: Sequence[int] = SEEDS,
     cells: Sequence[float] | None = None,
     duration: float = DURATION,
@@ -144,10 +144,10 @@ def _of_stones(names: Sequence[str], frictions: Sequence[float]) -> list[_Model]
 
 
 def _with_strains(models: Sequence[_Model], strains: Sequence[VolumetricStrain]) -> list[_Model]:
-    """Each model with each way to take volume strains; that of `Method` by itself goes unsaid."""
+    """Each model with each way to take volume strains; the paper's goes unsaid."""
     return [
         model
-        if strain == Method.volumetric_strain
+        if strain == reference.VOLUMETRIC_STRAIN
         else _Model(
             f"{model.label}, {strain.replace('_', ' ')}",
             (*model.parts, strain.replace("_", "-")),

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from .measure import Measured
@@ -22,10 +23,11 @@ class Effect(NamedTuple):
     grids: int
 
 
-def choices() -> list[Changed]:
-    """Each choice alone, steps at last."""
+def choices(problems: Iterable[Problem]) -> list[Changed]:
+    """Each choice alone that any of the problems has, steps at last."""
     steps = [{"courant": courant} for courant in COURANTS]
-    return [tuple(changes.items()) for changes in [*alone()[1:], *steps]]
+    others = chain.from_iterable(alone(problem)[1:] for problem in problems)
+    return list(dict.fromkeys(tuple(changes.items()) for changes in [*others, *steps]))
 
 
 def effect(

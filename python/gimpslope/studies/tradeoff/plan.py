@@ -8,7 +8,7 @@ from itertools import chain, zip_longest
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from ... import _check, kernel
-from ...method import DomainUpdate, Method
+from ...method import DomainUpdate, Method, VolumetricStrain
 from .problem import Changes, Problem
 from .problems import PROBLEMS
 
@@ -87,11 +87,12 @@ def cases(problem: Problem, *, quick: bool = False) -> list[Case]:
     """All cases of a problem, the coarse grids first; quick: the two coarsest grids, on which all
     is varied alone."""
     if quick:
-        some = problem.only or [*alone(), *alone(longer=True)[:1]]
+        some = problem.only or [*alone(problem), *alone(problem, longer=True)[:1]]
         wanted = [(cell, changes) for cell in problem.cells[:QUICK] for changes in some]
     else:
-        wanted = [(cell, changes) for cell in problem.cells for changes in problem.only or every()]
-        fine = [{}, *alone(longer=True)]
+        some = problem.only or every(problem)
+        wanted = [(cell, changes) for cell in problem.cells for changes in some]
+        fine = [{}, *alone(problem, longer=True)]
         wanted += [(cell, changes) for cell in problem.fine for changes in fine]
         wanted += [(cell, changes) for cell, some in problem.dear.items() for changes in some]
     found = (
@@ -102,19 +103,19 @@ def cases(problem: Problem, *, quick: bool = False) -> list[Case]:
     return [case for case in found if is_allowed(case)]
 
 
-def every() -> list[Changes]:
+def every(problem: Problem) -> list[Changes]:
     """Each choice alone at the default step and at a longer one, with which every shape function
     meets every transfer too; and a shorter step."""
     shorter, longer = ({"courant": courant} for courant in COURANTS)
     pairs: list[Changes] = [
         {**shape, **transfer, **longer} for shape in shapes()[1:] for transfer in transfers()[1:]
     ]
-    return [*alone(), shorter, *alone(longer=True), *pairs]
+    return [*alone(problem), shorter, *alone(problem, longer=True), *pairs]
 
 
-def alone(*, longer: bool = False) -> list[Changes]:
+def alone(problem: Problem, *, longer: bool = False) -> list[Changes]:
     """The default, and each choice alone, at the default step or a longer one."""
-    others: list[Changes] = [{name: one} for name, some in named().items() for one in some]
+    others: list[Changes] = [{name: one} for name, some in named(problem).items() for one in some]
     step: Changes = {"courant": COURANTS[-1]} if longer else {}
     return [{**one, **step} for one in (*shapes(), *transfers()[1:], *others)]
 
@@ -138,9 +139,12 @@ def transfers() -> list[Changes]:
     return [{}, {"alpha": 0.0, **blends}, *({"transfer": one, **blends} for one in others)]
 
 
-def named() -> dict[str, Sequence[str]]:
+def named(problem: Problem) -> dict[str, Sequence[str]]:
     """All other choices that go by name, but for the default: by parameter."""
-    return {name: some for name, some in _choices().items() if name != "transfer"}
+    strain = problem.method.volumetric_strain
+    strains = [one for one in get_args(VolumetricStrain) if one != strain]
+    others = {name: some for name, some in _choices().items() if name != "transfer"}
+    return {**others, "volumetric_strain": strains}
 
 
 def is_allowed(case: Case) -> bool:

@@ -29,7 +29,8 @@ class Problem:
     error : what of it is in error, and by whose answer, in words
     cells : m, coarse to fine
     solve : by cell (m), method, and model of the stones (None without); raises what the solver does
-    method : the package's default, with the viscosity where that is part of the problem
+    method : the package's default for its materials, with the viscosity where that is part of the
+        problem
     dimensions : in which the number of points and with it the cost grows
     yields : whether the material does, or is elastic
     known_to : uncertainty of the answer, a part of it; 0 where it is exact
@@ -44,7 +45,7 @@ class Problem:
     error: str
     cells: tuple[float, ...]
     solve: Callable[[float, Method, str | None], Solution]
-    method: Method = Method()  # noqa: RUF009 (frozen)
+    method: Method = Method(volumetric_strain="point")  # noqa: RUF009 (frozen)
     dimensions: int = 2
     yields: bool = False
     known_to: float = 0.0

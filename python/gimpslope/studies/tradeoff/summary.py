@@ -26,8 +26,9 @@ _EXPLANATION = (
     "output), medians of {rounds} through all cases, with their range. An error counts as reached "
     "where it holds on that grid and on all finer ones that were measured with the same method: "
     "smaller errors on coarse grids are luck. *Finest*: no finer one was measured. The default is "
-    "uGIMP, USF, a Courant number C of 0.4, and an alpha of 0.01 or the viscosity of the problem; "
-    "methods are named by what they change of it.\n"
+    "uGIMP, USF, a Courant number C of 0.4, an alpha of 0.01 or the viscosity of the problem, and "
+    "volume strains of each point where all is elastic, averaged over cells where a material "
+    "yields; methods are named by what they change of it.\n"
 )
 _EFFECTS = (
     "Error over that of the default on the same grid, geometric means over the grids, and the same "
@@ -94,7 +95,8 @@ def _choice(one: Choice, of_all: int) -> str:
 
 def _effects(by_problem: ByProblem) -> str:
     with_models = [problem for problem, _ in by_problem if len(problem.models) > 1]
-    rows = [_effect(words.changes(dict(one)), by_problem, one) for one in effects.choices()]
+    found = effects.choices(problem for problem, _ in by_problem)
+    rows = [_effect(words.changes(dict(one)), by_problem, one) for one in found]
     for problem in with_models:
         rows += [_effect(f"{model} stone", by_problem, (), model) for model in problem.models[1:]]
     return table(["", "cost", *(problem.title for problem, _ in by_problem)], rows)

@@ -13,6 +13,7 @@ _CHOICES = {
     "single": "single precision",
     "exponential": "exponential volumes",
     "cell_average": "cell average",
+    "point": "strains of points",
 }
 _CAPITALS = ("scheme", "transfer")
 

@@ -31,7 +31,7 @@ from .problem import Check, FloatArray, Outcome, Problem
 WIDTH, HEIGHT, GRAVITY = 0.2, 0.1, 9.81  # m, m, m/s2
 DENSITY, BULK, POISSON, FRICTION = 2650.0, 0.7e6, 0.3, 19.8  # kg/m3, Pa, -, degrees
 VISCOSITY = 5e-5  # m2/s; what it smears in the fall, sqrt(nu t), is 5 mm: two rods
-METHOD = gs.Method(viscosity=VISCOSITY)
+METHOD = gs.Method(viscosity=VISCOSITY, volumetric_strain="point")
 CURED = replace(METHOD, volumetric_strain="cell_average")  # of locking
 DURATION = 0.8  # s, eight times sqrt(height / g)
 MOVED = 1e-3  # m; less does not show on a photograph of the heap
