@@ -25,8 +25,8 @@ MODE = Mode(
     "soil is too stiff and its load rises without a limit. The mean stress takes up the "
     "constraints and forms a checkerboard.",
     source="Nagtegaal, Parks & Rice 1974, CMAME 4, 153; Hughes 1980, IJNME 15, 1413",
-    advice='Leave `Method.volumetric_strain` as it is, or give "cell_average": strains are averaged '
-    'over cells wherever a material yields. "point", as in most published codes and in the '
+    advice='Leave `Method.volumetric_strain` as it is, or give "cell_average": strains are '
+    'averaged over cells wherever a material yields. "point", as in most codes and in the '
     "study's own runs, locks.",
     run=run,
 )
