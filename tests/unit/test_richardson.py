@@ -7,25 +7,57 @@ import math
 import numpy as np
 import pytest
 
+from gimpslope._check import FloatArray
 from gimpslope.studies.richardson import extrapolate, extrapolate_means
 
 CELLS = np.array([0.4, 0.2, 0.1, 0.05])
 
 
+def found_on(order: float, scale: float) -> FloatArray:
+    return np.asarray(7.0 + scale * CELLS**order)
+
+
 @pytest.mark.parametrize("order", [0.7, 1.0, 1.5, 2.0])
 @pytest.mark.parametrize("scale", [3.0, -0.2])
 def test_power_law(order: float, scale: float) -> None:
-    found = extrapolate(7.0 + scale * CELLS**order)
+    found = extrapolate(found_on(order, scale))
     assert found.behaviour == "converges"
     assert found.orders == pytest.approx((order, order), rel=1e-6)
     assert found.limit == pytest.approx(7.0, rel=1e-9)
-    assert found.uncertainty == pytest.approx(1.25 * abs(scale) * 0.05**order, rel=1e-6)
+    alone = 1.25 * abs(scale) * 0.05**order
+    assert found.uncertainty == pytest.approx(alone / 3, rel=1e-6)
+    assert extrapolate(found_on(order, scale)[1:]).uncertainty == pytest.approx(alone, rel=1e-6)
 
 
 def test_two_powers_lie_within_the_uncertainty() -> None:
     found = extrapolate(7.0 + 2.0 * CELLS + 3.0 * CELLS**2)
     assert found.behaviour == "converges"
     assert abs(found.limit - 7.0) < found.uncertainty
+
+
+@pytest.mark.parametrize(("noise", "share"), [(0.0, 0.95), (0.002, 0.95)])
+@pytest.mark.parametrize("grids", [3, 4])
+def test_limits_lie_within_their_uncertainties(noise: float, share: float, grids: int) -> None:
+    """Of sums of two powers whose first is within the trusted orders, in 19 of 20 cases."""
+    rng = np.random.default_rng(1)
+    hold = []
+    for _ in range(4000):
+        order = rng.uniform(0.6, 2.0)
+        first, second = 1.0, rng.uniform(-1.5, 1.5)
+        values = first * CELLS**order + second * CELLS ** (order + rng.uniform(0.3, 1.5))
+        found = extrapolate((values * (1 + noise * rng.normal(size=4)))[4 - grids :])
+        if found.behaviour == "converges":
+            hold.append(abs(found.limit) <= found.uncertainty)
+    assert len(hold) > 1000 and np.mean(hold) >= share
+
+
+def test_a_fourth_grid_whose_limit_differs_counts() -> None:
+    """Orders of 1.25 and then 1.07."""
+    before, alone = extrapolate((0.0, 0.5, 0.71)), extrapolate((0.5, 0.71, 0.81))
+    found = extrapolate((0.0, 0.5, 0.71, 0.81))
+    assert found.limit == alone.limit
+    assert found.uncertainty == 2 * abs(alone.limit - before.limit)
+    assert alone.uncertainty / 3 < found.uncertainty < alone.uncertainty
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import takewhile
 
 from ..studies.richardson import CAUTION, TRUSTED, Extrapolation, extrapolate
 from .quantities import QUANTITIES
@@ -93,8 +94,8 @@ class Estimate:
 
     @cached_property
     def _found(self) -> Extrapolation | None:
-        last = self.raw[-3:]
-        return extrapolate(last) if len(last) == 3 and all(map(math.isfinite, last)) else None
+        last = list(takewhile(math.isfinite, reversed(self.raw)))[::-1]
+        return extrapolate(last) if len(last) >= 3 else None
 
     @property
     def _limit(self) -> Extrapolation | None:

@@ -2,7 +2,9 @@
 
 Sources: Roache, J. Fluids Eng. 116 (1994) 405, for the estimate and the safety factor of 1.25; Eca
 and Hoekstra, J. Comput. Phys. 262 (2014) 104, for the range of orders in which it is trusted, and
-three times the spread elsewhere.
+three times the spread elsewhere. Where four grids give two limits, their difference tells how far
+limits still move: twice that, but no less than a third of the first estimate, for it may be small
+by chance (for sums of two powers that holds in 19 of 20 cases, as the tests show).
 """
 
 from __future__ import annotations
@@ -25,6 +27,7 @@ TRUSTED = (0.5, 2.1)
 CAUTION = 3.0
 """Times the spread of the results, where there is no such order."""
 _SAFETY = 1.25
+_MOVES, _BY_CHANCE = 2.0, 1 / 3
 
 
 @dataclass(frozen=True)
@@ -36,7 +39,8 @@ class Extrapolation:
     orders : observed order of each three grids in a row, coarsest first; NaN where their two
         changes differ in sign
     limit : estimated value at zero cell size; NaN unless the last three approach one
-    uncertainty : of the limit, or of the finest value where there is none; 95 % by the sources
+    uncertainty : of the limit, or of the finest value where there is none; 95 % by the sources.
+        That of a limit takes in a fourth grid where there is one
     behaviour : "converges": the last three approach a limit with an order in [0.5, 2.1], or agree;
         "order not settled": they approach one with another order; "oscillates": their changes
         differ in sign; "diverges": the last change is the larger one
@@ -75,8 +79,8 @@ def extrapolate(values: Sequence[float]) -> Extrapolation:
     if order <= 0:
         return Extrapolation(orders, math.nan, CAUTION * spread, "diverges")
     if TRUSTED[0] <= order <= TRUSTED[1]:
-        correction = last / (2**order - 1)
-        return Extrapolation(orders, finest + correction, _SAFETY * abs(correction), "converges")
+        limit = finest + last / (2**order - 1)
+        return Extrapolation(orders, limit, _uncertainty(values, limit), "converges")
     # A low order throws the limit far off, a high one flatters: the methods' own are one to two.
     correction = last / (2 ** (1 if order < 1 else 2) - 1)
     return Extrapolation(orders, finest + correction, CAUTION * spread, "order not settled")
@@ -89,6 +93,17 @@ def extrapolate_means(draws: FloatArray) -> Extrapolation | None:
     means = [float(mean) for mean in draws.mean(axis=1)]
     last = list(takewhile(math.isfinite, reversed(means)))[::-1]
     return extrapolate(last) if len(last) >= 3 else None
+
+
+def _uncertainty(values: Sequence[float], limit: float) -> float:
+    """Of a limit by the last three, with that of the three before them where there are four."""
+    alone = _SAFETY * abs(limit - float(values[-1]))
+    if len(values) == 3:
+        return alone
+    before = extrapolate(values[-4:-1])
+    if before.behaviour != "converges":
+        return alone
+    return min(alone, max(_MOVES * abs(limit - before.limit), _BY_CHANCE * alone))
 
 
 def _order(change: float, next_change: float) -> float:
