@@ -101,7 +101,7 @@ def _setup(options: argparse.Namespace) -> Setup:
         if value is not None
     }
     if options.scene in reference.SLOPES:
-        setup = reference.setup(options.scene, **given)
+        setup = reference.setup(options.scene, volumetric_strain=None, **given)
         return replace(setup, method=replace(setup.method, ledger=False))
     for name, value in given.items():
         raise ValueError(

@@ -166,7 +166,7 @@ def method(
     precision: Precision = "double",
     threads: int = 1,
     ledger: bool = True,
-    volumetric_strain: VolumetricStrain = VOLUMETRIC_STRAIN,
+    volumetric_strain: VolumetricStrain | None = VOLUMETRIC_STRAIN,
 ) -> Method:
     """uGIMP, USF, volume strains of the points and the reading's viscosity, as the paper has it
     unless given otherwise; a Courant number, or a time step in s."""
@@ -194,7 +194,7 @@ def setup(
     courant: float | None = None,
     time_step: float | None = None,
     threads: int = 1,
-    volumetric_strain: VolumetricStrain = VOLUMETRIC_STRAIN,
+    volumetric_strain: VolumetricStrain | None = VOLUMETRIC_STRAIN,
 ) -> Setup:
     """All of a run of one of the four slopes, its slide of a duration in s; the rest as in `slope`
     and `method`."""

@@ -7,7 +7,7 @@ import multiprocessing
 import time as clock
 from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.metadata import version
 from os import PathLike
@@ -121,7 +121,7 @@ def _slope(name: str, *, folder: Path, target: Target, reading: str, seed: int) 
         reference.slope(name, reading, seed=seed),
         target.error,
         target.quantities,
-        method=replace(reference.method(reading, ledger=False), volumetric_strain=None),
+        method=reference.method(reading, ledger=False, volumetric_strain=None),
         budget=target.budget,
         progress=False,
     )
