@@ -21,7 +21,7 @@ from gimpslope.studies import reference
 pytestmark = pytest.mark.study
 
 PEAK = ("peak_kinetic_energy", "time_of_peak", "speed_at_peak")
-METHOD = reference.method(ledger=False)
+METHOD = reference.method(ledger=False, volumetric_strain=None)
 SLOPE = gs.Outline.slope()
 STONES = {
     "soil": (),
