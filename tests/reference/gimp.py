@@ -11,8 +11,6 @@ from . import strain, transfer
 from .bodies import (
     Body,
     Rigid,
-    Whole,
-    cross,
     held_nodes,
     near_walls,
     resolve,
@@ -21,7 +19,8 @@ from .bodies import (
     wall_contacts,
 )
 from .drucker_prager import Material, moduli
-from .interface import APART, STUCK, WELDED, Interface, before_strain, face
+from .held import Held
+from .interface import APART
 from .ledger import Ledger
 from .points import Points
 from .shapes import weights
@@ -174,27 +173,9 @@ class Reference(Points):
         momentum = self._momentum(s)
         v_raw = _divide(momentum, mass)
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
-        held, contacts = [], []
-        if self.bodies:
-            share, slope = shares(self.bodies, self.shape, self.lines, self.cell, self.walls)
-            soil = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
-            held = list(held_nodes(share, soil))
-            contacts = list(stone_contacts(self.bodies, self.cell, dt))
-        normals: dict[int, Array] = {}
-        for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
-            of_stone = stone.velocity_at(self.nodes)
-            if stone.friction is None:
-                v[of] = of_stone[of]
-                continue
-            soft = self.soft_volume / self.cell**2
-            of_soil = soft @ s, -np.stack([soft @ sx, soft @ sy], axis=1) * self.cell
-            found = face((share[number], slope[number]), of_soil)
-            of &= found.touching
-            meeting = self.meeting[number]
-            meeting[meeting == WELDED] = STUCK
-            meeting[~found.known] = WELDED
-            normals[number] = found.normal[of]
-            v[of] = before_strain(meeting[of], normals[number], v_raw[of], of_stone[of])
+        held = self._held(s, sx, sy, mass)
+        for one in held:
+            v[one.of] = one.before_strain(v_raw)
 
         if self.scheme == "usf":
             gradient = strain.velocity_gradient(self, sx, sy, v, cells)
@@ -211,59 +192,19 @@ class Reference(Points):
             momentum + dt * (force + damping), self.nodes, self.walls, self.cell
         )
         v_new = _divide(momentum, mass)
-        wholes, drags, interfaces = [], [], {}
-        for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
-            given = stone.point_mass[:, None] * self.body_force[stone.of]
-            pull = stone.mass * self.gravity * share_of_gravity
-            pull = pull + given.sum(axis=0)
-            turn = float(cross(stone.arms(), given).sum())
-            along = of  # nodes that move with the stone
-            if stone.friction is not None:
-                along = of & (self.meeting[number] != APART)
-            around = force[along].sum(axis=0)
-            turn_around = float(cross(self.nodes[along] - stone.centre, force[along]).sum())
-            drag = -self.local_damping * np.abs(pull + around) * np.sign(stone.velocity)
-            drag_moment = float(-self.local_damping * abs(turn + turn_around) * np.sign(stone.spin))
-            damping[along] = 0.0
-            one = of  # with the stone
-            if stone.friction is None:
-                pull, turn = pull + around, turn + turn_around
-            else:
-                one = np.zeros_like(of)
-            drags.append((drag, drag_moment))
-            wholes.append(
-                Whole(
-                    stone,
-                    stone.mass * stone.velocity + dt * (pull + drag),
-                    stone.inertia * stone.spin + dt * (turn + drag_moment),
-                    self.nodes[one],
-                    mass[one],
-                    brought[one],
-                )
-            )
-            if stone.friction is not None:
-                interfaces[number] = Interface(
-                    stone,
-                    wholes[-1],
-                    self.nodes[of],
-                    normals[number],
-                    self.meeting[number, of],
-                    mass[of],
-                    v_raw[of] + dt * (force + damping)[of] / mass[of, None],
-                )
-            contacts += wall_contacts(number, stone, self.walls, self.cell, dt)
-        resolve(contacts, wholes, lambda b: interfaces[b].settle() if b in interfaces else None)
-        for number, (whole, of) in enumerate(zip(wholes, held, strict=True)):
-            if number not in interfaces:
-                v_new[of] = whole.velocity_at(self.nodes[of])
-                continue
-            interface, stone = interfaces[number], self.bodies[number]
-            v_new[of] = interface.velocity()
-            rubbed = interface.rubbed(v[of], v_new[of], stone.velocity_at(self.nodes[of]))
+        for one in held:
+            pull = one.body.mass * self.gravity * share_of_gravity
+            one.load(dt, pull, self._given(one.body), force, self.local_damping)
+            damping[one.with_stone()] = 0.0
+        contacts = list(stone_contacts(self.bodies, self.cell, dt))
+        for number, one in enumerate(held):
+            one.join(mass, brought, v_raw + _divide(dt * (force + damping), mass))
+            contacts += wall_contacts(number, one.body, self.walls, self.cell, dt)
+        resolve(contacts, [one.whole for one in held], lambda number: held[number].settle())
+        for one in held:
+            v_new[one.of], rubbed = one.part(v)
             self.ledger.friction += rubbed
             self.ledger.rigidity -= rubbed
-            self.meeting[number] = APART
-            self.meeting[number, of] = interface.meeting
         self.node_velocity = np.where(mass[:, None] > 0, v_new, NO_MOTION)
         accounts.nodes(
             self.ledger,
@@ -280,7 +221,7 @@ class Reference(Points):
             full_weight=mass[:, None] * self.gravity,
             body=body,
             damping=damping,
-            held=np.any(held, axis=0) if held else np.zeros(len(mass), bool),
+            held=np.any([np.zeros(len(mass), bool), *(one.of for one in held)], axis=0),
             stress_first=self.scheme == "usf",
             points_keep=self.transfer == "xpic" and self.order > 1,
         )
@@ -297,14 +238,14 @@ class Reference(Points):
             strain.deform_last(self, self.ledger, gradient, dt, self.volume_update)
             self.ledger.transfer += float(dt * np.sum(internal * (back - v_new)))
         self.position = self.position + dt * s @ v_new
-        for stone, whole, drag_of in zip(self.bodies, wholes, drags, strict=True):
-            taken, worked, damped = stone.follow(
-                whole,
+        for one in held:
+            taken, worked, damped = one.body.follow(
+                one.whole,
                 dt,
                 self.gravity * share_of_gravity,
                 self.gravity,
-                stone.point_mass[:, None] * self.body_force[stone.of],
-                drag_of,
+                self._given(one.body),
+                one.drag,
             )
             self.ledger.damping -= damped
             self.ledger.rigidity -= taken
@@ -320,6 +261,26 @@ class Reference(Points):
         material = self.materials[int(self.material[of][0])]
         assert isinstance(material, Rigid)
         return material
+
+    def _held(self, s: Array, sx: Array, sy: Array, mass: Array) -> list[Held]:
+        """The stones and the nodes that each holds, of those that have a mass."""
+        if not self.bodies:
+            return []
+        share, slope = shares(self.bodies, self.shape, self.lines, self.cell, self.walls)
+        allowed = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
+        soft = self.soft_volume / self.cell**2
+        of_soil = soft @ s, -np.stack([soft @ sx, soft @ sy], axis=1) * self.cell
+        found = []
+        for number, of in enumerate(held_nodes(share, allowed)):
+            one = Held(self.bodies[number], self.nodes, of, self.meeting[number])
+            if one.slides:
+                one.touch((share[number], slope[number]), of_soil)
+            found.append(one)
+        return found
+
+    def _given(self, body: Body) -> Array:
+        """Body forces on the points of a stone (n, 2), N/m."""
+        return np.asarray(body.point_mass[:, None] * self.body_force[body.of])
 
     def _follow_bodies(self) -> None:
         for body in self.bodies:

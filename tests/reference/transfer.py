@@ -1,4 +1,5 @@
-"""Velocities between points and nodes: a blend of FLIP and PIC, APIC, or XPIC.
+"""Velocities between points and nodes: a blend of FLIP and PIC (paper eq. 26), APIC (Jiang et al.
+2015, doi 10.1145/2766996) or XPIC (Hammerquist and Nairn 2017, doi 10.1016/j.cma.2017.01.035).
 
 s is (n, nodes), velocities at the nodes are (nodes, 2).
 """
@@ -40,8 +41,8 @@ def take_affine(points: Points, s: Array, nodes: Array, after: Array) -> None:
 def take_smooth(
     points: Points, s: Array, mass: Array, held: Mask, before: Array, after: Array, order: int
 ) -> None:
-    """The change at the nodes, to velocities without what the nodes do not see (XPIC of an order);
-    `held` are the components (nodes, 2) that walls hold."""
+    """The change at the nodes, to velocities V without what no node sees, (1 - S S+)^order V
+    (XPIC); `held` are the components (nodes, 2) that walls hold."""
     to_nodes = np.where(mass > 0, 1 / np.where(mass > 0, mass, 1.0), 0.0)[:, None]
     for axis in (0, 1):
         back = np.where(held[:, axis, None], 0.0, to_nodes * s.T * points.mass)
