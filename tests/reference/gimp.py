@@ -1,17 +1,16 @@
 """The material points and their step: update stress first (USF), last (USL), or last from the
 velocities that the points bring back (MUSL)."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import ledger as accounts
+from . import strain, transfer
 from .bodies import (
     Body,
     Rigid,
-    Whole,
-    cross,
     held_nodes,
     near_walls,
     resolve,
@@ -19,31 +18,23 @@ from .bodies import (
     stone_contacts,
     wall_contacts,
 )
-from .drucker_prager import (
-    Material,
-    elastic_increment,
-    energy_density,
-    moduli,
-    return_mapping,
-    rotate,
-)
-from .interface import APART, STUCK, WELDED, Interface, before_strain, face
+from .drucker_prager import Material, moduli
+from .held import Held
+from .interface import APART
 from .ledger import Ledger
+from .points import Points
 from .shapes import weights
 from .walls import NO_MOTION, Wall, hold_momentum, hold_velocity
 
 Array = NDArray[np.float64]
 
 
-class Reference:
+class Reference(Points):
     """Plane-strain material points on a fixed grid; arguments as for the compiled solver.
 
-    The state is in plain attributes that may be read and assigned: position, velocity (n, 2);
-    stress (n, 4) as xx, yy, zz, xy; body_force (n, 2), m/s2; mass, volume, plastic_strain (n,);
-    half_length (n, 2); ledger, J/m; deformation_gradient (n, 2, 2); materials; time. But for
-    position and velocity of the points of rigid stones, which follow `bodies`, in the order of the
-    stones' numbers. The grid reaches `margin` cells beyond the first positions; a point that leaves
-    it is an error.
+    Its state may be read and assigned, with ledger, J/m, and time; but for position and velocity of
+    the points of rigid stones, which follow `bodies`, in the order of the stones' numbers. The grid
+    reaches `margin` cells beyond the first positions; a point that leaves it is an error.
     """
 
     def __init__(
@@ -81,23 +72,9 @@ class Reference:
         _check("transfer", transfer, "flip", "apic", "xpic")
         _check("blend", blend[0], "alpha", "viscosity", "relaxation_time")
         _check("time_step", time_step[0], "fixed", "courant")
-        self.position = np.array(position, float)
-        self.velocity = np.array(velocity, float)
-        self.half_length = np.array(half_length, float)
-        self.mass = np.array(mass, float)
-        self.volume = np.array(volume, float)
-        self.material = np.array(material, int)
-        self.materials = list(materials)
-        n = len(self.position)
-        self.stress = np.zeros((n, 4))
-        self.plastic_strain = np.zeros(n)
-        self.body_force = np.zeros((n, 2))
-        self.deformation_gradient = np.tile(np.eye(2), (n, 1, 1))
-        self.first_half_length = self.half_length.copy()
-        self.first_volume = self.volume.copy()
+        super().__init__(position, velocity, half_length, mass, volume, material, materials)
         self.time = 0.0
-        rigid = [i for i, material in enumerate(self.materials) if isinstance(material, Rigid)]
-        self.rigid = np.isin(self.material, rigid)
+        n = len(self.position)
         number = np.full(n, -1) if stone is None else np.array(stone, int)
         square = np.repeat(np.sqrt(self.volume)[:, None] / 2, 2, axis=1)
         domain = self.half_length if "gimp" in shape else square
@@ -122,7 +99,6 @@ class Reference:
         self.ledger = Ledger()
         self.scheme, self.blend, self.step_rule = scheme, blend, time_step
         self.transfer, self.order = transfer, order
-        self.affine = np.zeros((n, 2, 2))  # B of APIC
         self.set_gravity(0.0, 0.0, 0.0)
         self.set_damping(0.0, False)
 
@@ -152,7 +128,7 @@ class Reference:
         if kind == "fixed":
             return value
         stiffness = np.zeros(len(self.mass))
-        for material, of in self._deformable():
+        for material, of in self.deformable():
             _, shear, bulk = moduli(material)
             stiffness[of] = bulk + 4 * shear / 3
         wave = np.sqrt(stiffness * self.volume / self.mass).max()
@@ -178,9 +154,7 @@ class Reference:
 
     def release_stress(self) -> float:
         """Return the present stress to the yield surface; elastic energy released, J/m."""
-        before = self._elastic_energy()
-        self.stress = self._return(self.stress)
-        released = before - self._elastic_energy()
+        released = strain.release(self)
         self.ledger.plastic += released
         return released
 
@@ -191,40 +165,25 @@ class Reference:
         )
         if not np.allclose(s.sum(axis=1), 1.0, atol=1e-9):
             raise RuntimeError("a point has left the grid; make margin larger")
+        cells = None
+        if self.volumetric_strain == "cell_average":
+            cells = strain.cell_numbers(self.position, self.origin, self.cell)
 
-        soft_mass = np.where(self.rigid, 0.0, self.mass)
-        mass = s.T @ soft_mass
+        mass = s.T @ self.soft_mass
         momentum = self._momentum(s)
         v_raw = _divide(momentum, mass)
         v = hold_velocity(v_raw, self.node_velocity, self.nodes, self.walls, self.cell)
-        held, contacts = [], []
-        if self.bodies:
-            share, slope = shares(self.bodies, self.shape, self.lines, self.cell, self.walls)
-            soil = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
-            held = list(held_nodes(share, soil))
-            contacts = list(stone_contacts(self.bodies, self.cell, dt))
-        normals: dict[int, Array] = {}
-        for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
-            of_stone = stone.velocity_at(self.nodes)
-            if stone.friction is None:
-                v[of] = of_stone[of]
-                continue
-            soft = np.where(self.rigid, 0.0, self.volume) / self.cell**2
-            of_soil = soft @ s, -np.stack([soft @ sx, soft @ sy], axis=1) * self.cell
-            found = face((share[number], slope[number]), of_soil)
-            of &= found.touching
-            meeting = self.meeting[number]
-            meeting[meeting == WELDED] = STUCK
-            meeting[~found.known] = WELDED
-            normals[number] = found.normal[of]
-            v[of] = before_strain(meeting[of], normals[number], v_raw[of], of_stone[of])
+        held = self._held(s, sx, sy, mass)
+        for one in held:
+            v[one.of] = one.before_strain(v_raw)
 
         if self.scheme == "usf":
-            self._strain(sx, sy, v, dt)
-        internal = self._internal_force(sx, sy)
+            gradient = strain.velocity_gradient(self, sx, sy, v, cells)
+            strain.deform(self, self.ledger, gradient, dt, self.volume_update)
+        internal = strain.internal_force(self, sx, sy, cells)
         share_of_gravity = 1.0 if self.ramp == 0 else min(1.0, (self.time + dt) / self.ramp)
         weight = mass[:, None] * self.gravity * share_of_gravity
-        body = s.T @ (soft_mass[:, None] * self.body_force)
+        body = s.T @ (self.soft_mass[:, None] * self.body_force)
         force = internal + weight + body
         damping = -self.local_damping * np.abs(force) * np.sign(v)
 
@@ -233,59 +192,19 @@ class Reference:
             momentum + dt * (force + damping), self.nodes, self.walls, self.cell
         )
         v_new = _divide(momentum, mass)
-        wholes, drags, interfaces = [], [], {}
-        for number, (stone, of) in enumerate(zip(self.bodies, held, strict=True)):
-            given = stone.point_mass[:, None] * self.body_force[stone.of]
-            pull = stone.mass * self.gravity * share_of_gravity
-            pull = pull + given.sum(axis=0)
-            turn = float(cross(stone.arms(), given).sum())
-            along = of  # nodes that move with the stone
-            if stone.friction is not None:
-                along = of & (self.meeting[number] != APART)
-            around = force[along].sum(axis=0)
-            turn_around = float(cross(self.nodes[along] - stone.centre, force[along]).sum())
-            drag = -self.local_damping * np.abs(pull + around) * np.sign(stone.velocity)
-            drag_moment = float(-self.local_damping * abs(turn + turn_around) * np.sign(stone.spin))
-            damping[along] = 0.0
-            one = of  # with the stone
-            if stone.friction is None:
-                pull, turn = pull + around, turn + turn_around
-            else:
-                one = np.zeros_like(of)
-            drags.append((drag, drag_moment))
-            wholes.append(
-                Whole(
-                    stone,
-                    stone.mass * stone.velocity + dt * (pull + drag),
-                    stone.inertia * stone.spin + dt * (turn + drag_moment),
-                    self.nodes[one],
-                    mass[one],
-                    brought[one],
-                )
-            )
-            if stone.friction is not None:
-                interfaces[number] = Interface(
-                    stone,
-                    wholes[-1],
-                    self.nodes[of],
-                    normals[number],
-                    self.meeting[number, of],
-                    mass[of],
-                    v_raw[of] + dt * (force + damping)[of] / mass[of, None],
-                )
-            contacts += wall_contacts(number, stone, self.walls, self.cell, dt)
-        resolve(contacts, wholes, lambda b: interfaces[b].settle() if b in interfaces else None)
-        for number, (whole, of) in enumerate(zip(wholes, held, strict=True)):
-            if number not in interfaces:
-                v_new[of] = whole.velocity_at(self.nodes[of])
-                continue
-            interface, stone = interfaces[number], self.bodies[number]
-            v_new[of] = interface.velocity()
-            rubbed = interface.rubbed(v[of], v_new[of], stone.velocity_at(self.nodes[of]))
+        for one in held:
+            pull = one.body.mass * self.gravity * share_of_gravity
+            one.load(dt, pull, self._given(one.body), force, self.local_damping)
+            damping[one.with_stone()] = 0.0
+        contacts = list(stone_contacts(self.bodies, self.cell, dt))
+        for number, one in enumerate(held):
+            one.join(mass, brought, v_raw + _divide(dt * (force + damping), mass))
+            contacts += wall_contacts(number, one.body, self.walls, self.cell, dt)
+        resolve(contacts, [one.whole for one in held], lambda number: held[number].settle())
+        for one in held:
+            v_new[one.of], rubbed = one.part(v)
             self.ledger.friction += rubbed
             self.ledger.rigidity -= rubbed
-            self.meeting[number] = APART
-            self.meeting[number, of] = interface.meeting
         self.node_velocity = np.where(mass[:, None] > 0, v_new, NO_MOTION)
         accounts.nodes(
             self.ledger,
@@ -302,35 +221,38 @@ class Reference:
             full_weight=mass[:, None] * self.gravity,
             body=body,
             damping=damping,
-            held=np.any(held, axis=0) if held else np.zeros(len(mass), bool),
+            held=np.any([np.zeros(len(mass), bool), *(one.of for one in held)], axis=0),
             stress_first=self.scheme == "usf",
             points_keep=self.transfer == "xpic" and self.order > 1,
         )
 
-        self.ledger.transfer += self._kinetic_energy_of_soil()
+        self.ledger.transfer += self.soft_kinetic_energy()
         self._take_velocity(s, mass, v_raw, v, v_new, dt)
-        self.ledger.transfer -= self._kinetic_energy_of_soil()
-        if self.scheme == "usl":
-            self._strain_last(sx, sy, v_new, v_new, internal, dt)
-        elif self.scheme == "musl":
-            back = _divide(self._momentum(s), mass)
-            back = hold_velocity(back, self.node_velocity, self.nodes, self.walls, self.cell)
-            self._strain_last(sx, sy, back, v_new, internal, dt)
+        self.ledger.transfer -= self.soft_kinetic_energy()
+        if self.scheme != "usf":
+            back = v_new
+            if self.scheme == "musl":
+                back = _divide(self._momentum(s), mass)
+                back = hold_velocity(back, self.node_velocity, self.nodes, self.walls, self.cell)
+            gradient = strain.velocity_gradient(self, sx, sy, back, cells)
+            strain.deform_last(self, self.ledger, gradient, dt, self.volume_update)
+            self.ledger.transfer += float(dt * np.sum(internal * (back - v_new)))
         self.position = self.position + dt * s @ v_new
-        for stone, whole, drag_of in zip(self.bodies, wholes, drags, strict=True):
-            taken, worked, damped = stone.follow(
-                whole,
+        for one in held:
+            taken, worked, damped = one.body.follow(
+                one.whole,
                 dt,
                 self.gravity * share_of_gravity,
                 self.gravity,
-                stone.point_mass[:, None] * self.body_force[stone.of],
-                drag_of,
+                self._given(one.body),
+                one.drag,
             )
             self.ledger.damping -= damped
             self.ledger.rigidity -= taken
             self.ledger.external += worked
         self._follow_bodies()
-        self._update_domains()
+        if self.shape == "cpgimp" and self.domain_update != "none":
+            self.half_length = strain.domains(self, self.domain_update)
         self._damp_kinetic()
         self.time += dt
 
@@ -340,155 +262,51 @@ class Reference:
         assert isinstance(material, Rigid)
         return material
 
-    def _deformable(self) -> Iterator[tuple[Material, NDArray[np.bool_]]]:
-        """The deformable materials and their points."""
-        for i, material in enumerate(self.materials):
-            if not isinstance(material, Rigid):
-                yield material, self.material == i
+    def _held(self, s: Array, sx: Array, sy: Array, mass: Array) -> list[Held]:
+        """The stones and the nodes that each holds, of those that have a mass."""
+        if not self.bodies:
+            return []
+        share, slope = shares(self.bodies, self.shape, self.lines, self.cell, self.walls)
+        allowed = (mass > 0) & ~near_walls(self.nodes, self.walls, self.cell)
+        soft = self.soft_volume / self.cell**2
+        of_soil = soft @ s, -np.stack([soft @ sx, soft @ sy], axis=1) * self.cell
+        found = []
+        for number, of in enumerate(held_nodes(share, allowed)):
+            one = Held(self.bodies[number], self.nodes, of, self.meeting[number])
+            if one.slides:
+                one.touch((share[number], slope[number]), of_soil)
+            found.append(one)
+        return found
+
+    def _given(self, body: Body) -> Array:
+        """Body forces on the points of a stone (n, 2), N/m."""
+        return np.asarray(body.point_mass[:, None] * self.body_force[body.of])
 
     def _follow_bodies(self) -> None:
         for body in self.bodies:
             self.position[body.of], self.velocity[body.of] = body.points()
 
-    def _cell_mean(self, values: Array, cells: NDArray[np.int64]) -> Array:
-        """Mean over the volume of the deformable points in the same cell."""
-        mean = np.zeros_like(values)
-        for cell in np.unique(cells[~self.rigid]):
-            of = (cells == cell) & ~self.rigid
-            mean[of] = np.average(values[of], weights=self.volume[of])
-        return mean
-
     def _momentum(self, s: Array) -> Array:
-        """That of the soil at the nodes, with its affine motion about each point."""
-        brought = s.T @ (np.where(self.rigid, 0.0, self.mass)[:, None] * self.velocity)
+        """That of the soil at the nodes."""
+        brought = transfer.momentum(self, s)
         if self.transfer == "apic":
-            arm, weighted = self._arms(s)
-            around = self.affine @ np.linalg.pinv(weighted @ arm) @ weighted
-            brought = brought + np.tensordot(self.mass, around, axes=1).T
-        return np.asarray(brought)
-
-    def _arms(self, s: Array) -> tuple[Array, Array]:
-        """From each point to the nodes, (n, nodes, 2), and times their weights, (n, 2, nodes)."""
-        arm = self.nodes[None] - self.position[:, None]
-        return arm, np.swapaxes(s[:, :, None] * arm, 1, 2)
+            brought = brought + transfer.affine_momentum(self, s, self.nodes)
+        return brought
 
     def _take_velocity(
         self, s: Array, mass: Array, v_raw: Array, v: Array, v_new: Array, dt: float
     ) -> None:
         if self.transfer == "flip":
-            alpha = self.alpha(dt)
-            pic, flip = s @ v_new, self.velocity + s @ (v_new - v_raw)
-            self.velocity = alpha * pic + (1 - alpha) * flip
+            transfer.take_blend(self, s, v_raw, v_new, self.alpha(dt))
         elif self.transfer == "apic":
-            self.affine = np.swapaxes(self._arms(s)[1] @ v_new, 1, 2)
-            self.velocity = s @ v_new
+            transfer.take_affine(self, s, self.nodes, v_new)
         else:
-            to_nodes = np.where(mass > 0, 1 / np.where(mass > 0, mass, 1.0), 0.0)[:, None]
-            at_walls = near_walls(self.nodes, self.walls, self.cell)
-            for axis in (0, 1):
-                held = at_walls & (v[:, axis] == 0)
-                smooth = s @ np.where(held[:, None], 0.0, to_nodes * s.T * self.mass)  # S S+
-                noise = np.linalg.matrix_power(np.eye(len(s)) - smooth, self.order)
-                self.velocity[:, axis] -= noise @ self.velocity[:, axis]
-            self.velocity = self.velocity + s @ (v_new - v)
-
-    def _cells(self) -> NDArray[np.int64]:
-        """A number for the cell of each point."""
-        places = np.floor((self.position - self.origin) / self.cell)
-        return np.unique(places, axis=0, return_inverse=True)[1].ravel()
-
-    def _strain(self, sx: Array, sy: Array, v: Array, dt: float) -> Array:
-        """Deform by the node velocities v; gives the strain increments (n, 2, 2)."""
-        gradient = np.stack([sx @ v, sy @ v], axis=2)
-        if self.volumetric_strain == "cell_average":
-            trace = np.trace(gradient, axis1=1, axis2=2)
-            change = (self._cell_mean(trace, self._cells()) - trace) / 2
-            gradient = gradient + change[:, None, None] * np.eye(2)
-        gradient[self.rigid] = 0.0
-        self._deform(gradient, dt)
-        return (gradient + np.swapaxes(gradient, 1, 2)) * dt / 2
-
-    def _strain_last(
-        self, sx: Array, sy: Array, v: Array, v_new: Array, internal: Array, dt: float
-    ) -> None:
-        """Deform by v after forces that belong to the stress before; v_new moves the points."""
-        before = self.stress * self.volume[:, None]
-        strain = self._strain(sx, sy, v, dt)
-        late = _tensor(self.stress * self.volume[:, None] - before)[:, :2, :2]
-        self.ledger.integration -= float(np.sum(late * strain))
-        self.ledger.transfer += float(dt * np.sum(internal * (v - v_new)))
-
-    def _internal_force(self, sx: Array, sy: Array) -> Array:
-        sigma = _tensor(self.stress)[:, :2, :2]
-        if self.volumetric_strain == "cell_average":
-            mean = np.trace(sigma, axis1=1, axis2=2) / 2
-            change = self._cell_mean(mean, self._cells()) - mean
-            sigma = sigma + change[:, None, None] * np.eye(2)
-        sigma = sigma * np.where(self.rigid, 0.0, self.volume)[:, None, None]
-        return np.asarray(-(sx.T @ sigma[:, :, 0] + sy.T @ sigma[:, :, 1]))
-
-    def _deform(self, velocity_gradient: Array, dt: float) -> None:
-        """Volume, deformation gradient and stress from the velocity gradient (n, 2, 2)."""
-        dilation = np.trace(velocity_gradient, axis1=1, axis2=2) * dt
-        linear = self.volume_update == "linear"
-        volume_before = self.volume
-        self.volume = self.volume * (1 + dilation if linear else np.exp(dilation))
-        self.deformation_gradient = (np.eye(2) + velocity_gradient * dt) @ self.deformation_gradient
-
-        strain = np.zeros((len(self.mass), 3, 3))
-        strain[:, :2, :2] = (velocity_gradient + np.swapaxes(velocity_gradient, 1, 2)) * dt / 2
-        spin = (velocity_gradient[:, 1, 0] - velocity_gradient[:, 0, 1]) * dt / 2
-        turned = rotate(_tensor(self.stress), spin)
-        trial = turned.copy()
-        for material, of in self._deformable():
-            trial[of] += elastic_increment(material, strain[of])
-        self.stress = self._return(_components(trial))
-        for material, of in self._deformable():
-            accounts.points(
-                self.ledger,
-                material,
-                turned=turned[of],
-                stress=_tensor(self.stress)[of],
-                strain=strain[of],
-                volume_before=volume_before[of],
-                volume=self.volume[of],
-            )
-
-    def _return(self, stress: Array) -> Array:
-        returned = stress.copy()
-        for material, of in self._deformable():
-            tensor, plastic_strain = return_mapping(material, _tensor(stress[of]))
-            returned[of] = _components(tensor)
-            self.plastic_strain[of] += plastic_strain
-        return returned
-
-    def _elastic_energy(self) -> float:
-        energy = 0.0
-        for material, of in self._deformable():
-            energy += float(self.volume[of] @ energy_density(material, _tensor(self.stress[of])))
-        return float(energy)
+            held = near_walls(self.nodes, self.walls, self.cell)[:, None] & (v == 0)
+            transfer.take_smooth(self, s, mass, held, v, v_new, self.order)
 
     def kinetic_energy(self) -> float:
         """J/m."""
-        return self._kinetic_energy_of_soil() + sum(body.energy() for body in self.bodies)
-
-    def _kinetic_energy_of_soil(self) -> float:
-        of = ~self.rigid
-        return float(np.sum(self.mass[of, None] * self.velocity[of] ** 2) / 2)
-
-    def _update_domains(self) -> None:
-        if self.shape != "cpgimp" or self.domain_update == "none":
-            return
-        f = self.deformation_gradient
-        if self.domain_update == "jacobian":
-            growth = np.sqrt(self.volume / self.first_volume)[:, None]
-        elif self.domain_update == "stretch":
-            squares, axes = np.linalg.eigh(np.swapaxes(f, 1, 2) @ f)
-            stretch = axes * np.sqrt(squares)[:, None, :] @ np.swapaxes(axes, 1, 2)
-            growth = np.diagonal(stretch, axis1=1, axis2=2)
-        else:
-            growth = np.diagonal(f, axis1=1, axis2=2)
-        self.half_length = self.first_half_length * growth
+        return self.soft_kinetic_energy() + sum(body.energy() for body in self.bodies)
 
     def _damp_kinetic(self) -> None:
         if not self.kinetic_damping:
@@ -511,16 +329,3 @@ def _check(name: str, value: str, *allowed: str) -> None:
 def _divide(momentum: Array, mass: Array) -> Array:
     """Node velocity; 0 where there is no mass."""
     return np.where(mass[:, None] > 0, momentum / np.where(mass > 0, mass, 1.0)[:, None], 0.0)
-
-
-def _tensor(stress: Array) -> Array:
-    """(n, 4) as xx, yy, zz, xy -> (n, 3, 3)."""
-    tensor = np.zeros((len(stress), 3, 3))
-    tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 2, 2] = stress[:, 0], stress[:, 1], stress[:, 2]
-    tensor[:, 0, 1] = tensor[:, 1, 0] = stress[:, 3]
-    return tensor
-
-
-def _components(tensor: Array) -> Array:
-    """(n, 3, 3) -> (n, 4) as xx, yy, zz, xy."""
-    return np.stack([tensor[:, 0, 0], tensor[:, 1, 1], tensor[:, 2, 2], tensor[:, 0, 1]], axis=1)

@@ -12,8 +12,8 @@ import pytest
 from matplotlib.figure import Figure
 
 from gimpslope import cli
-from gimpslope.studies import stability
-from gimpslope.studies.stability import amplification, page, rows, spin
+from gimpslope.studies import page, stability
+from gimpslope.studies.stability import amplification, rows, spin
 from gimpslope.studies.stability.point_bound import bound
 from gimpslope.studies.verify import Check
 

@@ -81,18 +81,16 @@ template <class Shape, bool kOwnDomain, class Real>
 void averaged_force_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
-  PointForces forces;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  point_forces(view, begin, n, forces);
-  for (int k = 0; k < n; ++k) {
-    const double* cell = cell_of(view, begin, k);
-    const double mean = -view.points.volume[begin + k] / view.grid.cell * (cell[2] / cell[3]);
-    const double change = mean - 0.5 * (forces.xx[k] + forces.yy[k]);
-    forces.xx[k] += change;
-    forces.yy[k] += change;
-  }
-  scatter_forces(view, n, weights, forces);
-  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
+  scatter_stress(view, begin, n, weights, [&](PointForces& forces) {
+    for (int k = 0; k < n; ++k) {
+      const double* cell = cell_of(view, begin, k);
+      const double mean = -view.points.volume[begin + k] / view.grid.cell * (cell[2] / cell[3]);
+      const double change = mean - 0.5 * (forces.xx[k] + forces.yy[k]);
+      forces.xx[k] += change;
+      forces.yy[k] += change;
+    }
+  });
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

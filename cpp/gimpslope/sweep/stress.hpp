@@ -126,6 +126,19 @@ void point_forces(const View<Real>& view, int begin, int n, PointForces& forces)
   }
 }
 
+/// Forces at the nodes: of the stresses, after `change` of the forces that they are at the points,
+/// and body forces.
+template <class Shape, class Real, class Change>
+[[gnu::always_inline]] inline void scatter_stress(const View<Real>& view, int begin, int n,
+                                                  const Weights<Shape, Need::gradients>& weights,
+                                                  Change change) {
+  PointForces forces;
+  point_forces(view, begin, n, forces);
+  change(forces);
+  scatter_forces(view, n, weights, forces);
+  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
+}
+
 /// Volume, deformation and stress of a block after its strain increments.
 template <class Real>
 void deform_block(const View<Real>& view, const StepInput& input, const Block& block,
@@ -151,13 +164,10 @@ void stress_block(const View<Real>& view, const StepInput& input, const Block& b
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;
-  PointForces forces;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   gather_gradient(view, n, weights, gradient);
   deform_block(view, input, block, gradient, ledger);
-  point_forces(view, begin, n, forces);
-  scatter_forces(view, n, weights, forces);
-  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
+  scatter_stress(view, begin, n, weights, [](PointForces&) {});
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

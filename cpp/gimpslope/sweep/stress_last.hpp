@@ -14,11 +14,8 @@ template <class Shape, bool kOwnDomain, class Real>
 void force_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
-  PointForces forces;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  point_forces(view, begin, n, forces);
-  scatter_forces(view, n, weights, forces);
-  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
+  scatter_stress(view, begin, n, weights, [](PointForces&) {});
 }
 
 /// Forces at the nodes.

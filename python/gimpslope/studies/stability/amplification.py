@@ -18,7 +18,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..verify.problem import FloatArray
+from ..._check import FloatArray
 
 HIGHEST = 1.005  # eigenvalue that passes for stable: a motion grows by a thousand in 1,400 steps
 LIMITS = (0.03, 4.0)  # of the C that are looked at

@@ -17,7 +17,8 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..verify.problem import Check, FloatArray
+from ..._check import FloatArray
+from ..check import Check
 from .mode import Findings, Mode, Table
 
 DENSITY, YOUNG, POISSON, FRICTION, COHESION = 1800.0, 30e6, 0.33, 22.0, 1e3

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 import gimpslope as gs
 
 from .. import reference
-from ..verify.problem import Check
+from ..check import Check
 from . import rows
 from .mode import Findings, Mode, Table
 

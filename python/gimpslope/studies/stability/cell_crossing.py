@@ -12,9 +12,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
+from ..check import Check
 from ..verify import column, translation
-from ..verify.problem import Check, FloatArray
 from .mode import Findings, Mode, Table
 
 STEP = 2e-3  # between offsets at which the force is taken, cells

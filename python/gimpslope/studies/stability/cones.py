@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...materials import Cone
+from ..check import Check
 from ..verify import biaxial
-from ..verify.problem import Check, FloatArray
 from .mode import Findings, Mode, Table
 
 TYPICAL = 22.0  # degrees

@@ -15,8 +15,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Scheme
-from ..verify.problem import Check, FloatArray
+from ..check import Check
 from . import rows
 from .amplification import matrix
 from .mode import Findings, Mode, Table

@@ -15,9 +15,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
 from ...method_warning import TORN
-from ..verify.problem import Check, FloatArray
+from ..check import Check
 from . import rows
 from .mode import Findings, Mode, Table
 

@@ -16,7 +16,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .. import reference
-from ..verify.problem import Check
+from ..check import Check
 from .mode import Findings, Mode, Table
 
 CELLS = {False: (0.8, 0.4, 0.2), True: (0.4, 0.2, 0.1)}  # m

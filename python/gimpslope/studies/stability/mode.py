@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import warnings
 from dataclasses import dataclass
+from typing import Self
 
 from matplotlib.figure import Figure
 
-from ..verify.problem import Check
+from ...method_warning import MethodWarning
+from ..check import Check
+from ..checked import Case, Checked
 
 
 @dataclass(frozen=True)
@@ -42,22 +45,22 @@ class Findings:
 
 
 @dataclass(frozen=True)
-class Mode:
-    """A way in which methods fail.
+class Mode(Case[Findings]):
+    """A way in which methods fail; its name is also that of the warnings.
 
     Attributes
     ----------
-    name : for the command line, the files and the warnings
-    title : a few words
     mechanism : why it happens, in three sentences
     source : who found it
     advice : what to do
-    run : measures it, quickly or in full
     """
 
-    name: str
-    title: str
     mechanism: str
     source: str
     advice: str
-    run: Callable[[bool], Findings]
+
+    def check(self, full: bool) -> Checked[Self, Findings]:
+        """Measure it and time that."""
+        with warnings.catch_warnings():  # it goes where they warn of on purpose
+            warnings.simplefilter("ignore", MethodWarning)
+            return super().check(full)

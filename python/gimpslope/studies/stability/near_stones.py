@@ -14,7 +14,8 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..verify.problem import Check, FloatArray
+from ..._check import FloatArray
+from ..check import Check
 from .mode import Findings, Mode, Table
 
 CELL, PER_SIDE, SIDE = 1.0, 2, 3  # m; points a cell and direction; of a stone, cells

@@ -13,7 +13,8 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from ..verify.problem import Check, FloatArray
+from ..._check import FloatArray
+from ..check import Check
 from . import rows
 from .mode import Findings, Mode
 

@@ -13,8 +13,8 @@ import numpy as np
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
-from ..verify.problem import FloatArray
 
 PLACES = 41  # a direction of a cell
 

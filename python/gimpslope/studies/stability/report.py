@@ -1,4 +1,4 @@
-"""The atlas as text, Markdown, HTML, JSON and pictures."""
+"""The atlas as text, Markdown, HTML and JSON."""
 
 from __future__ import annotations
 
@@ -12,31 +12,24 @@ from typing import Any, get_args
 
 from ...kernel import shapes
 from ...method import Scheme
-from .. import plain_data
-from ..verify.problem import Check
-from . import Surveyed, page
+from .. import page, plain_data
+from ..check import Check
+from ..checked import verdict
+from . import Surveyed
 from .mode import Table
 
-_DPI = 72
 _TITLE = "Where methods fail"
 _COLUMNS = ("", "quantity", "theory", "measured", "holds", "why there")
-
-
-def line(one: Surveyed) -> str:
-    """A mode in one line."""
-    checks = one.findings.checks
-    held = sum(check.holds for check in checks)
-    return f"{one.mode.title}: {held} of {len(checks)} checks hold, {one.seconds:.1f} s"
 
 
 def text(surveyed: Sequence[Surveyed]) -> str:
     """All checks in lines of text, and how many hold."""
     lines = []
     for one in surveyed:
-        lines += [f"{one.mode.name}: {one.mode.title}"]
+        lines += [f"{one.case.name}: {one.case.title}"]
         for kind, quantity, theory, measured, holds, _ in _rows(one):
             lines.append(f"  {kind:6}  {quantity}: {measured} ({theory}){_miss(holds)}")
-    return "\n".join([*lines, "", _verdict(surveyed)])
+    return "\n".join([*lines, "", verdict(surveyed)])
 
 
 def blocks(surveyed: Sequence[Surveyed], *, full: bool) -> list[page.Block]:
@@ -45,7 +38,7 @@ def blocks(surveyed: Sequence[Surveyed], *, full: bool) -> list[page.Block]:
     parts: list[page.Block] = [
         page.Heading(_TITLE, level=1),
         page.Paragraph(
-            f"gimpslope {version('gimpslope')}, `{command}`. {_verdict(surveyed)} A row *fails* "
+            f"gimpslope {version('gimpslope')}, `{command}`. {verdict(surveyed)} A row *fails* "
             "says that what is known to fail does, where theory has it; a row *stands* that "
             "another method does not: the default, unless it says otherwise. This build has the "
             f"shape functions {', '.join(shapes())} and the schemes {', '.join(get_args(Scheme))}."
@@ -63,25 +56,20 @@ def data(surveyed: Sequence[Surveyed], *, full: bool) -> dict[str, Any]:
         "set": "full" if full else "quick",
         "modes": [
             {
-                "name": one.mode.name,
-                "title": one.mode.title,
-                "mechanism": one.mode.mechanism,
-                "source": one.mode.source,
-                "advice": one.mode.advice,
+                "name": one.case.name,
+                "title": one.case.title,
+                "mechanism": one.case.mechanism,
+                "source": one.case.source,
+                "advice": one.case.advice,
                 "seconds": one.seconds,
                 "holds": one.holds,
-                "fails": [_plain(check) for check in one.findings.fails],
-                "stands": [_plain(check) for check in one.findings.stands],
-                "table": None if one.findings.table is None else asdict(one.findings.table),
+                "fails": [_plain(check) for check in one.result.fails],
+                "stands": [_plain(check) for check in one.result.stands],
+                "table": None if one.result.table is None else asdict(one.result.table),
             }
             for one in surveyed
         ],
     }
-
-
-def draw(one: Surveyed, directory: str | PathLike[str]) -> None:
-    """Write the figure of a mode into a directory."""
-    one.findings.figure.savefig(Path(directory) / _picture(one), dpi=_DPI)
 
 
 def write(surveyed: Sequence[Surveyed], directory: str | PathLike[str], *, full: bool) -> None:
@@ -93,24 +81,24 @@ def write(surveyed: Sequence[Surveyed], directory: str | PathLike[str], *, full:
 
 
 def _of_mode(one: Surveyed) -> list[page.Block]:
-    of = one.mode
+    of = one.case
     parts: list[page.Block] = [
         page.Heading(of.title, name=of.name),
         page.Paragraph(f"`{of.name}`, {one.seconds:.1f} s. {of.mechanism}"),
         page.Paragraph(of.source, begins="Source"),
         page.Grid(_COLUMNS, _rows(one)),
     ]
-    if one.findings.table is not None:
-        parts.append(_grid(one.findings.table))
+    if one.result.table is not None:
+        parts.append(_grid(one.result.table))
     return [
         *parts,
         page.Paragraph(of.advice, begins="What to do"),
-        page.Picture(_picture(one), of.title),
+        page.Picture(one.picture, of.title),
     ]
 
 
 def _rows(one: Surveyed) -> list[tuple[str, ...]]:
-    kinds = (("fails", one.findings.fails), ("stands", one.findings.stands))
+    kinds = (("fails", one.result.fails), ("stands", one.result.stands))
     return [
         (
             kind,
@@ -126,10 +114,8 @@ def _rows(one: Surveyed) -> list[tuple[str, ...]]:
 
 
 def _expected(check: Check) -> str:
-    if not math.isfinite(check.low):
-        return f"≤ {_number(check.high)}"
-    if not math.isfinite(check.high):
-        return f"≥ {_number(check.low)}"
+    if check.bound is not None:
+        return f"{check.bound} {_number(check.expected)}"
     below, above = check.expected - check.low, check.high - check.expected
     if math.isclose(below, above, rel_tol=1e-3):
         return f"{_number(check.expected)} ± {above:.2g}"
@@ -154,14 +140,3 @@ def _miss(holds: str) -> str:
 
 def _plain(check: Check) -> dict[str, Any]:
     return asdict(check) | {"holds": check.holds}
-
-
-def _picture(one: Surveyed) -> str:
-    return f"{one.mode.name}.png"
-
-
-def _verdict(surveyed: Sequence[Surveyed]) -> str:
-    checks = [check for one in surveyed for check in one.findings.checks]
-    held = sum(check.holds for check in checks)
-    seconds = sum(one.seconds for one in surveyed)
-    return f"{held} of {len(checks)} checks hold; {seconds:.0f} s in all."

@@ -9,8 +9,8 @@ import numpy as np
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
-from ..verify.problem import FloatArray
 
 BETWEEN_ROLLERS = gs.Walls(gs.Free(), gs.Free(), gs.Roller(), gs.Roller())
 FAR = 64.0  # of sides without a wall

@@ -14,9 +14,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Precision
 from .. import reference
-from ..verify.problem import Check, FloatArray
+from ..check import Check
 from .mode import Findings, Mode, Table
 
 FAR, CELL, SPEED, STEP, FLIGHT = 1e4, 0.5, 3.0, 1e-3, 1000  # m, m, m/s, s, steps

@@ -16,8 +16,9 @@ from typing import get_args
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..._check import FloatArray
 from ...method import Scheme
-from ..verify.problem import Check, FloatArray
+from ..check import Check
 from . import rows
 from .amplification import limit
 from .mode import Findings, Mode, Table

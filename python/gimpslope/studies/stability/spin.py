@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
+from ..check import Check
 from ..verify import shear
-from ..verify.problem import Check
 from .mode import Findings, Mode, Table
 
 

@@ -17,8 +17,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Scheme, Shape
-from ..verify.problem import Check, FloatArray
+from ..check import Check
 from . import rows
 from .amplification import FINENESS, first_unstable, limit
 from .mode import Findings, Mode, Table

@@ -14,8 +14,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import DomainUpdate
-from ..verify.problem import Check, FloatArray
+from ..check import Check
 from . import rows
 from .mode import Findings, Mode
 

@@ -24,9 +24,11 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...materials import Cone
+from ..check import Check
 from ..stopwatch import Stopwatch
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 WIDTH, HEIGHT, GRAVITY = 0.2, 0.1, 9.81  # m, m, m/s2
 DENSITY, BULK, POISSON, FRICTION = 2650.0, 0.7e6, 0.3, 19.8  # kg/m3, Pa, -, degrees

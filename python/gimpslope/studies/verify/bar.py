@@ -18,8 +18,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
+from ..check import Check
 from ..stopwatch import Stopwatch
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 LENGTH, YOUNG, DENSITY, SPEED = 25.0, 100.0, 1.0, 0.1  # m, Pa, kg/m3, m/s
 CELLS = 50

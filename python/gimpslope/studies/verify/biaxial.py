@@ -22,8 +22,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...materials import Cone
-from .problem import Check, FloatArray, Outcome, Problem
+from ..check import Check
+from .problem import Outcome, Problem
 
 FRICTION, COHESION = 22.0, 1e3  # degrees, Pa
 SIDES = (50e3, 100e3)  # stress on the sides s3, compression positive, Pa

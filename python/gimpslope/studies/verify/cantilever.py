@@ -23,8 +23,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
+from ..check import Check
 from ..stopwatch import Stopwatch
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 LENGTH, HEIGHT, GRAVITY = 4.0, 1.0, 10.0  # m, m, m/s2
 BEAM = gs.Elastic(density=1050.0, young=1e6, poisson=0.3)

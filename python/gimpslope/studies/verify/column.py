@@ -18,9 +18,11 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
+from ..check import Check
 from ..stopwatch import Stopwatch
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 DENSITY = 80.0  # kg/m3
 PUBLISHED = {5: 1.18e-2, 10: 5.65e-3, 20: 2.62e-3}  # error of cpGIMP by cells

@@ -25,7 +25,9 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 import gimpslope as gs
 
-from .problem import Check, FloatArray, Outcome, Problem
+from ..._check import FloatArray
+from ..check import Check
+from .problem import Outcome, Problem
 
 WIDTH, GRAVITY = 1.0, 9.81  # m, m/s2
 DENSITY, FRICTION = 1600.0, 31.0  # kg/m3, degrees

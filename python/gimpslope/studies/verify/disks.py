@@ -19,7 +19,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from .problem import Check, FloatArray, Outcome, Problem
+from ..._check import FloatArray
+from ..check import Check
+from .problem import Outcome, Problem
 
 RADIUS, SPEED = 0.2, 0.1  # m, m/s along each axis
 CENTRES = np.array([(0.2, 0.2), (0.8, 0.8)])  # m

@@ -21,7 +21,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from .problem import Check, FloatArray, Outcome, Problem
+from ..._check import FloatArray
+from ..check import Check
+from .problem import Outcome, Problem
 
 COHESION = 10e3  # Pa
 CLAY = gs.DruckerPrager(2000.0, 300e6, 0.49, friction=0, cohesion=COHESION, cone="plane_strain")

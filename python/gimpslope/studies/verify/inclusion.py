@@ -25,8 +25,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
+from ..check import Check
 from .order import observed_order
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 ComplexArray = npt.NDArray[np.complexfloating]
 

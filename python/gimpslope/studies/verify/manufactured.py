@@ -22,8 +22,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
+from ..check import Check
 from ..stopwatch import Stopwatch
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 MATERIAL = gs.Elastic(density=1000.0, young=1e7, poisson=0.3)
 SHEAR, LAME = MATERIAL.shear_modulus, MATERIAL.bulk_modulus - 2 / 3 * MATERIAL.shear_modulus  # Pa

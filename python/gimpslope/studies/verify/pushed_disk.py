@@ -25,8 +25,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
+from ..check import Check
 from .order import observed_order
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 COHESION, PRESSURE = 10e3, 200e3  # Pa
 CLAY = gs.DruckerPrager(2000.0, 280e6, 0.4, friction=0, cohesion=COHESION)

@@ -1,4 +1,4 @@
-"""What the problems came to, as text, Markdown, JSON and pictures."""
+"""What the problems came to, as text, Markdown and JSON."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from ...kernel import instruction_sets
-from .. import plain_data
+from .. import page, plain_data
+from ..check import Check
+from ..checked import verdict
 from . import Solved
-from .problem import Check
 
 _COLUMNS = ("problem", "quantity", "expected", "got", "error", "order", "holds", "time")
-_DPI = 72
 
 
 def text(solved: Sequence[Solved]) -> str:
@@ -33,14 +33,7 @@ def text(solved: Sequence[Solved]) -> str:
         for row in rows
     ]
     lines.insert(1, "-" * max(map(len, lines)))
-    return "\n".join([*lines, "", _verdict(solved)])
-
-
-def line(one: Solved) -> str:
-    """A problem in one line."""
-    held = sum(check.holds for check in one.outcome.checks)
-    checks = len(one.outcome.checks)
-    return f"{one.problem.title}: {held} of {checks} checks hold, {one.seconds:.1f} s"
+    return "\n".join([*lines, "", verdict(solved)])
 
 
 def markdown(solved: Sequence[Solved], *, full: bool) -> str:
@@ -50,23 +43,22 @@ def markdown(solved: Sequence[Solved], *, full: bool) -> str:
         "# Verification",
         "",
         f"gimpslope {version('gimpslope')}, the {kind} set of `gimpslope verify`. "
-        + _verdict(solved)
+        + verdict(solved)
         + f" Times are of one core, {platform.machine()}, instructions {instruction_sets()[-1]}.",
     ]
     for one in solved:
         lines += [
             "",
-            f"## {one.problem.title}",
+            f"## {one.case.title}",
             "",
-            f"`{one.problem.name}`, {one.seconds:.1f} s",
+            f"`{one.case.name}`, {one.seconds:.1f} s",
             "",
             "| quantity | expected | got | error | order | holds | reason of the tolerance |",
             "|---|---|---|---|---|---|---|",
         ]
-        for check, row in zip(one.outcome.checks, _rows(one), strict=True):
-            cells = [*row[1:7], check.why]
-            lines.append("| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |")
-        lines += ["", f"![{one.problem.title}]({_picture(one)})"]
+        for check, row in zip(one.result.checks, _rows(one), strict=True):
+            lines.append(page.markdown_row([*row[1:7], check.why]))
+        lines += ["", f"![{one.case.title}]({one.picture})"]
     return "\n".join(lines) + "\n"
 
 
@@ -77,20 +69,15 @@ def data(solved: Sequence[Solved], *, full: bool) -> dict[str, Any]:
         "set": "full" if full else "quick",
         "problems": [
             {
-                "name": one.problem.name,
-                "title": one.problem.title,
+                "name": one.case.name,
+                "title": one.case.title,
                 "seconds": one.seconds,
                 "holds": one.holds,
-                "checks": [_plain(check) for check in one.outcome.checks],
+                "checks": [_plain(check) for check in one.result.checks],
             }
             for one in solved
         ],
     }
-
-
-def draw(one: Solved, directory: str | PathLike[str]) -> None:
-    """Write the picture of a problem into a directory."""
-    one.outcome.figure.savefig(Path(directory) / _picture(one), dpi=_DPI)
 
 
 def write(solved: Sequence[Solved], directory: str | PathLike[str], *, full: bool) -> None:
@@ -102,8 +89,8 @@ def write(solved: Sequence[Solved], directory: str | PathLike[str], *, full: boo
 
 def _rows(one: Solved) -> list[tuple[str, ...]]:
     """A row of text a check; name and time of the problem in the first."""
-    first = [(one.problem.name, f"{one.seconds:.1f} s")]
-    heads = first + [("", "")] * (len(one.outcome.checks) - 1)
+    first = [(one.case.name, f"{one.seconds:.1f} s")]
+    heads = first + [("", "")] * (len(one.result.checks) - 1)
     return [
         (
             name,
@@ -115,18 +102,17 @@ def _rows(one: Solved) -> list[tuple[str, ...]]:
             "yes" if check.holds else "NO",
             seconds,
         )
-        for (name, seconds), check in zip(heads, one.outcome.checks, strict=True)
+        for (name, seconds), check in zip(heads, one.result.checks, strict=True)
     ]
 
 
 def _expected(check: Check) -> str:
-    if check.error is not None:
-        below, above = check.expected - check.low, check.high - check.expected
-        if math.isclose(below, above):
-            return f"{_number(check.expected)} ± {above:.2g}"
-        return f"{_number(check.expected)} -{below:.2g} +{above:.2g}"
-    sign = "≤" if math.isfinite(check.high) else "≥"
-    return f"{sign} {_number(check.expected)}"
+    if check.bound is not None:
+        return f"{check.bound} {_number(check.expected)}"
+    below, above = check.expected - check.low, check.high - check.expected
+    if math.isclose(below, above):
+        return f"{_number(check.expected)} ± {above:.2g}"
+    return f"{_number(check.expected)} -{below:.2g} +{above:.2g}"
 
 
 def _number(value: float) -> str:
@@ -135,14 +121,3 @@ def _number(value: float) -> str:
 
 def _plain(check: Check) -> dict[str, Any]:
     return asdict(check) | {"error": check.error, "holds": check.holds}
-
-
-def _picture(one: Solved) -> str:
-    return f"{one.problem.name}.png"
-
-
-def _verdict(solved: Sequence[Solved]) -> str:
-    checks = [check for one in solved for check in one.outcome.checks]
-    held = sum(check.holds for check in checks)
-    seconds = sum(one.seconds for one in solved)
-    return f"{held} of {len(checks)} checks hold; {seconds:.0f} s in all."

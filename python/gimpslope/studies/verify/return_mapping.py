@@ -19,8 +19,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...materials import Cone
-from .problem import Check, FloatArray, Outcome, Problem
+from ..check import Check
+from .problem import Outcome, Problem
 
 FRICTION, COHESION = 22.0, 1e3  # degrees, Pa
 CUT_OFF = 600.0  # largest mean stress, Pa; the apex lies at 2475 Pa

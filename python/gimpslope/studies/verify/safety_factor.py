@@ -28,8 +28,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
+from ..check import Check
 from .log_spiral import stability_number
-from .problem import Check, FloatArray, Outcome, Problem
+from .problem import Outcome, Problem
 
 YOUNG, POISSON = 1e9, 0.3  # Pa
 DAMPING = 0.8  # share of each nodal force

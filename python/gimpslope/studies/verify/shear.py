@@ -24,7 +24,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from .problem import Check, FloatArray, Outcome, Problem
+from ..._check import FloatArray
+from ..check import Check
+from .problem import Outcome, Problem
 
 ROCK = gs.Elastic(density=2000.0, young=1e6, poisson=0.3)
 FIRST = np.array([3e4, -1e4, 2e4, 1.5e4])  # xx, yy, zz, xy before the turn, Pa

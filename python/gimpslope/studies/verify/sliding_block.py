@@ -18,8 +18,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
-from .problem import Check, FloatArray, Outcome, Problem
+from ..check import Check
+from .problem import Outcome, Problem
 
 ANGLE, GRAVITY = np.radians(30.0), 9.81  # rad, m/s2
 LENGTH, HEIGHT = 2.0, 0.5  # m

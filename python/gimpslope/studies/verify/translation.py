@@ -16,8 +16,10 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
-from .problem import Check, FloatArray, Outcome, Problem
+from ..check import Check
+from .problem import Outcome, Problem
 
 CELL = 0.1  # m
 LENGTH, HEIGHT, TRAVEL = 16, 6, 10  # of the block, and its way, cells

@@ -26,8 +26,10 @@ from matplotlib.ticker import NullLocator
 
 import gimpslope as gs
 
+from ..._check import FloatArray
 from ...method import Shape
-from .problem import Check, FloatArray, Outcome, Problem
+from ..check import Check
+from .problem import Outcome, Problem
 
 MATERIAL = gs.Elastic(density=1000.0, young=1e6, poisson=0.3)
 SHEAR = MATERIAL.shear_modulus  # G, Pa

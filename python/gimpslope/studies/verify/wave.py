@@ -20,7 +20,9 @@ from matplotlib.figure import Figure
 
 import gimpslope as gs
 
-from .problem import Check, FloatArray, Outcome, Problem
+from ..._check import FloatArray
+from ..check import Check
+from .problem import Outcome, Problem
 
 YOUNG, DENSITY = 1e6, 1000.0  # Pa, kg/m3
 WAVE_SPEED = (YOUNG / DENSITY) ** 0.5  # m/s

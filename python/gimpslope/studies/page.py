@@ -67,6 +67,11 @@ def markdown(blocks: Sequence[Block]) -> str:
     return "\n\n".join(_markdown(block) for block in blocks) + "\n"
 
 
+def markdown_row(cells: Sequence[str]) -> str:
+    """A row of a table as Markdown."""
+    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+
+
 def html(title: str, blocks: Sequence[Block]) -> str:
     """The page as one HTML file."""
     body = "\n".join(_html(block) for block in blocks)
@@ -81,9 +86,7 @@ def _markdown(block: Block) -> str:
             return f"*{block.begins}:* {block.text}" if block.begins else block.text
         case Grid():
             rows = [block.columns, ["---"] * len(block.columns), *block.rows]
-            return "\n".join(
-                "| " + " | ".join(cell.replace("|", r"\|") for cell in row) + " |" for row in rows
-            )
+            return "\n".join(markdown_row(row) for row in rows)
         case Picture():
             return f"![{block.title}]({block.file})"
 
