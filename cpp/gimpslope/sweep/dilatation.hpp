@@ -9,15 +9,44 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// The sums of the cell that the place of point k, counted from `begin`, lies in.
+/// Of each point of a block, the cell that it lies in, by its node.
+struct CellPlaces {
+  alignas(kCacheLine) std::int32_t of[kBlock];
+};
+
 template <class Real>
-double* cell_of(const View<Real>& view, int begin, int k) {
+void find_cells(const View<Real>& view, int begin, int n, CellPlaces& places) {
   const GridView& g = view.grid;
   constexpr bool relative = PointsView<Real>::relative;
   const double left = relative ? 0.0 : g.left, bottom = relative ? 0.0 : g.bottom;
-  const int column = static_cast<int>((view.points.x[begin + k] - left) / g.cell);
-  const int row = static_cast<int>((view.points.y[begin + k] - bottom) / g.cell);
-  return g.cells + 4 * (row * g.stride + column + (relative ? view.points.home[begin + k] : 0));
+  const double per_cell = 1.0 / g.cell;
+  const int stride = g.stride;
+  const Real *x = view.points.x + begin, *y = view.points.y + begin;
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    const int column = static_cast<int>((x[k] - left) * per_cell);
+    const int row = static_cast<int>((y[k] - bottom) * per_cell);
+    places.of[k] = row * stride + column;
+  }
+  if constexpr (relative)
+    for (int k = 0; k < n; ++k) places.of[k] += view.points.home[begin + k];
+}
+
+/// Adds two values a point to the sums of its cell, those of points in a row in the same cell at
+/// once.
+inline void add_to_cells(double* sums, int n, const CellPlaces& places, const double* first,
+                         const double* second) {
+  for (int k = 0; k < n;) {
+    const std::ptrdiff_t place = places.of[k];
+    double a = 0.0, b = 0.0;
+    for (; k < n && places.of[k] == place; ++k) {
+      a += first[k];
+      b += second[k];
+    }
+    double* of_cell = sums + 4 * place;
+    of_cell[0] += a;
+    of_cell[1] += b;
+  }
 }
 
 /// First of three sweeps: volumes and their rates to the cells.
@@ -26,27 +55,33 @@ void dilatation_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;
+  CellPlaces places;
+  alignas(kCacheLine) double volume[kBlock], rate[kBlock];
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   gather_gradient(view, n, weights, gradient);
+  find_cells(view, begin, n, places);
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
-    const double volume = view.points.volume[begin + k];
-    double* cell = cell_of(view, begin, k);
-    cell[0] += volume;
-    cell[1] += volume * (gradient.vx_x[k] + gradient.vy_y[k]);
+    volume[k] = view.points.volume[begin + k];
+    rate[k] = volume[k] * (gradient.vx_x[k] + gradient.vy_y[k]);
   }
+  add_to_cells(view.grid.cells, n, places, volume, rate);
 }
 
 /// Mean stresses to the cells.
 template <class Real>
 void mean_stress_block(const View<Real>& view, const Block& block) {
   const PointsView<Real>& p = view.points;
-  for (int k = 0; k < block.end - block.begin; ++k) {
-    const double volume = p.volume[block.begin + k];
-    const double xx = p.stress_xx[block.begin + k], yy = p.stress_yy[block.begin + k];
-    double* cell = cell_of(view, block.begin, k);
-    cell[2] += 0.5 * volume * (xx + yy);
-    cell[3] += volume;
+  const int begin = block.begin, n = block.end - block.begin;
+  CellPlaces places;
+  alignas(kCacheLine) double mean[kBlock], volume[kBlock];
+  find_cells(view, begin, n, places);
+#pragma omp simd
+  for (int k = 0; k < n; ++k) {
+    volume[k] = p.volume[begin + k];
+    mean[k] = 0.5 * volume[k] * (double{p.stress_xx[begin + k]} + double{p.stress_yy[begin + k]});
   }
+  add_to_cells(view.grid.cells + 2, n, places, mean, volume);
 }
 
 /// Stresses from the averaged strains.
@@ -56,10 +91,14 @@ void averaged_strain_block(const View<Real>& view, const StepInput& input, const
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   Gradient gradient;
+  CellPlaces places;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   gather_gradient(view, n, weights, gradient);
+  find_cells(view, begin, n, places);
+  const double* cells = view.grid.cells;
+#pragma omp simd
   for (int k = 0; k < n; ++k) {
-    const double* cell = cell_of(view, begin, k);
+    const double* cell = cells + 4 * std::ptrdiff_t{places.of[k]};
     const double own = gradient.vx_x[k] + gradient.vy_y[k];
     const double change = 0.5 * (cell[1] / cell[0] - own);
     gradient.vx_x[k] += change;
@@ -83,9 +122,15 @@ void averaged_force_block(const View<Real>& view, const Block& block) {
   Weights<Shape, Need::gradients> weights;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   scatter_stress(view, begin, n, weights, [&](PointForces& forces) {
+    CellPlaces places;
+    find_cells(view, begin, n, places);
+    const double* cells = view.grid.cells;
+    const Real* volume = view.points.volume + begin;
+    const double per_cell = -1.0 / view.grid.cell;
+#pragma omp simd
     for (int k = 0; k < n; ++k) {
-      const double* cell = cell_of(view, begin, k);
-      const double mean = -view.points.volume[begin + k] / view.grid.cell * (cell[2] / cell[3]);
+      const double* cell = cells + 4 * std::ptrdiff_t{places.of[k]};
+      const double mean = per_cell * volume[k] * (cell[2] / cell[3]);
       const double change = mean - 0.5 * (forces.xx[k] + forces.yy[k]);
       forces.xx[k] += change;
       forces.yy[k] += change;
