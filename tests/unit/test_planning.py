@@ -136,6 +136,20 @@ def test_a_blend_beyond_all_of_pic_takes_shorter_steps() -> None:
     assert blend.within_limits(scene, gentle) is gentle
 
 
+@pytest.mark.parametrize(("share", "first"), [(0.6, 0.6), (1.0, 0.9)])
+def test_steps_are_no_longer_than_the_blend_allows_on_the_coarsest_grid(
+    monkeypatch: pytest.MonkeyPatch, share: float, first: float
+) -> None:
+    """A step twice as long would need twice the share."""
+    scene = gs.Scene(gs.Outline.slope(2, 1), reference.soil(), cell=0.5)
+    assert grids.coarsest(scene) == scene
+    posed = pose(scene, 0.5, gs.Method(alpha=share), gs.Stages(), until_rest=False)
+    same = (1.0, 1.0)
+    found = tried(monkeypatch, posed.setup, same, same, same)
+    for setup, expected in ((posed.setup, first), (found.setup, 0.9)):
+        assert gs.Solver.of(scene, setup.method).alpha == pytest.approx(expected, rel=1e-4)
+
+
 def with_stones(gap: float, rock: gs.Material, cell: float = 0.2) -> gs.Scene:
     pair = [gs.Ellipse((2.0, 2.0), (1.0, 1.0)), gs.Ellipse((3.0 + gap, 2.0), (1.0, 1.0))]
     return gs.Scene(gs.Outline.slope(), reference.soil(), stones=pair, stone=rock, cell=cell)
