@@ -12,8 +12,6 @@ import pytest
 
 import gimpslope as gs
 from gimpslope import planning
-from gimpslope.analysis import smooth_peak
-from gimpslope.energy import Energy
 from gimpslope.planning import Estimate, blend, grids, savings, search, stones
 from gimpslope.planning.cost import seconds
 from gimpslope.planning.pilot import Pilot
@@ -69,26 +67,6 @@ def test_nothing_is_said_of_what_is_not_there(raw: tuple[float, ...]) -> None:
     found = estimate(*raw)
     assert math.isinf(found.error) and found.levels(0.5) is None
     assert found.shown == "not reached"
-
-
-def energy(kinetic: np.ndarray, time: np.ndarray) -> Energy:
-    flat = np.zeros_like(time)
-    return Energy(Path("made"), time, flat.astype(int), kinetic, flat, flat, 1.0 + time)
-
-
-def test_peak_through_the_noise_of_its_rows() -> None:
-    time = np.arange(0.0, 3.0, 0.005)
-    rough = 1e-3 * np.sin(2 * np.pi * time / 0.02)
-    found = smooth_peak(energy(1e5 * (1 - (time - 1.603) ** 2 + rough), time))
-    assert found is not None
-    assert found.time == pytest.approx(1.603, abs=1e-3)
-    assert found.kinetic == pytest.approx(1e5, rel=1e-4)
-    assert found.max_speed == pytest.approx(2.603, abs=1e-3)
-
-
-def test_no_peak_while_energy_grows() -> None:
-    time = np.arange(0.0, 1.0, 0.005)
-    assert smooth_peak(energy(time**2, time)) is None
 
 
 @pytest.mark.parametrize("given", [{"alpha": 0.02}, {"relaxation_time": 0.03}, {"viscosity": 0.1}])
