@@ -18,6 +18,7 @@ namespace {
 
 constexpr int kStepsBetweenSorts = 100;
 constexpr double kFastest = 1000.0;  // speed of a point, in wave speeds
+constexpr double kStill = 1e-6;      // cells a step, a tenth of a cell in a hundred thousand steps
 
 /// The points share one half-length unless they were given different ones, follow the deformation,
 /// or are too wide to be shared.
@@ -291,6 +292,7 @@ void Solver::step(double dt, double whole, bool wants_energies) {
     if (report.lost >= 0) fail_at(report.lost, dt);
   }
   if (bodies_.contacts_missed()) fail("rigid stones overlap in more places than can be told", -1);
+  bodies_.count_unsettled(dt, kStill * grid_.cell());
   if (method_.ledger) {
     for (const Report& report : reports_) add(report.ledger, ledger_);
     for (const Ledger& row : ledger_rows_) add(row, ledger_);
