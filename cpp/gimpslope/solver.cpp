@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kStepsBetweenSorts = 100;
 constexpr double kFastest = 1000.0;  // speed of a point, in wave speeds
-constexpr double kStill = 1e-6;      // cells a step, a tenth of a cell in a hundred thousand steps
 
 /// The points share one half-length unless they were given different ones, follow the deformation,
 /// or are too wide to be shared.

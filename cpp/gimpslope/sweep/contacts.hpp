@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "../travel.hpp"
 #include "../view.hpp"
 #include "body_terms.hpp"
 #include "settling.hpp"
@@ -12,7 +13,7 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-constexpr int kContactSweeps = 30;
+constexpr int kFewestSweeps = 30, kMostSweeps = 300;
 
 /// Contacts of a body with a wall: its nearest place to either side of its centre, so that it can
 /// neither run into it nor turn into it.
@@ -115,7 +116,8 @@ inline double part(const BodiesView& all, Contact& contact) {
   return parted > held ? parted : held;
 }
 
-/// Impulses at contacts, by which no body runs into what it touches.
+/// Impulses at contacts, by which no body runs into what it touches: as many sweeps as do as a
+/// rule, and more while the last one has moved a body, which light ones in heavy soil take.
 inline void resolve_contacts(const View<double>& view, const StepInput& input) {
   const BodiesView& all = *view.bodies;
   *all.contact_count = 0;
@@ -128,15 +130,17 @@ inline void resolve_contacts(const View<double>& view, const StepInput& input) {
     all.held[contact.body].touches = true;
     if (contact.other >= 0) all.held[contact.other].touches = true;
   }
-  for (int sweep = 0; sweep < kContactSweeps; ++sweep) {
+  const double still = kStill * view.grid.cell / input.dt;
+  double& last = *all.contacts_unsettled;
+  last = 0.0;
+  for (int sweep = 0; sweep < kFewestSweeps || (last > still && sweep < kMostSweeps); ++sweep) {
     for (int body = 0; sweep > 0 && body < all.count; ++body)
       if (all.held[body].touches && all.friction[body] >= 0.0) settle_nodes(all, body);
-    double last = 0.0;
+    last = 0.0;
     for (int k = 0; k < *all.contact_count; ++k) {
       const double change = part(all, all.contacts[k]);
       last = change > last ? change : last;
     }
-    *all.contacts_unsettled = last;
   }
 }
 
