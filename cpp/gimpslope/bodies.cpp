@@ -147,6 +147,21 @@ void Bodies::stop() {
 void Bodies::reset_impulses() {
   for (BodyState& state : states_)
     state.impulse[0] = state.impulse[1] = state.angular_impulse = 0.0;
+  interfaces_unsettled_ = contacts_unsettled_ = {};
+}
+
+void Bodies::count_unsettled(double dt, double nothing) {
+  const auto count = [&](Unsettled& all, double speed) {
+    const double moved = dt * speed;
+    if (!(moved > nothing)) return;
+    ++all.steps;
+    all.largest = std::max(all.largest, moved);
+    all.sum += moved;
+  };
+  double left = 0.0;
+  for (const HeldBody& held : held_) left = std::max(left, held.unsettled);
+  count(interfaces_unsettled_, left);
+  count(contacts_unsettled_, contacts_left_);
 }
 
 double Bodies::kinetic_energy() const {
@@ -223,7 +238,8 @@ BodiesView Bodies::view(const Points& points, std::size_t nodes, double travel) 
           contacts_.data(),
           static_cast<int>(contacts_.size()),
           &contact_count_,
-          &contacts_missed_};
+          &contacts_missed_,
+          &contacts_left_};
 }
 
 std::int64_t Bodies::bytes() const {

@@ -11,6 +11,13 @@
 
 namespace gimpslope {
 
+/// Steps in which the iterations for impulses ended before these stayed, and how far the last
+/// change of a speed moves a body in one of them at most, and in all, m.
+struct Unsettled {
+  std::int64_t steps = 0;
+  double largest = 0.0, sum = 0.0;
+};
+
 /// The bodies of a scene. Their points are among all others but take no part in the sweeps: a body
 /// is where its centre and angle say, and moves them. Whatever sums over points does so in the
 /// order in which they were given, so that nothing depends on threads or on how they are sorted.
@@ -59,6 +66,14 @@ class Bodies {
   /// Whether bodies have met in more places than there is room for.
   bool contacts_missed() const { return contacts_missed_; }
 
+  /// Counts a step whose impulses have not settled, where that moves a body by more than `nothing`.
+  void count_unsettled(double dt, double nothing);
+
+  /// Since the impulses were last reset: those of the soil that slides along bodies, and those
+  /// where bodies touch each other or walls.
+  const Unsettled& interfaces_unsettled() const { return interfaces_unsettled_; }
+  const Unsettled& contacts_unsettled() const { return contacts_unsettled_; }
+
   std::int64_t bytes() const;
 
  private:
@@ -82,6 +97,8 @@ class Bodies {
   std::vector<Contact> contacts_;
   int contact_count_ = 0, window_ = 0, threads_ = 1;
   bool contacts_missed_ = false;
+  double contacts_left_ = 0.0;  // of the last step
+  Unsettled interfaces_unsettled_, contacts_unsettled_;
   double widest_ = 0.0;
 };
 

@@ -291,6 +291,7 @@ void Solver::step(double dt, double whole, bool wants_energies) {
     if (report.lost >= 0) fail_at(report.lost, dt);
   }
   if (bodies_.contacts_missed()) fail("rigid stones overlap in more places than can be told", -1);
+  bodies_.count_unsettled(dt, kStill * grid_.cell());
   if (method_.ledger) {
     for (const Report& report : reports_) add(report.ledger, ledger_);
     for (const Ledger& row : ledger_rows_) add(row, ledger_);

@@ -6,6 +6,9 @@ namespace gimpslope {
 /// Farthest that an edge of a domain may move in one step, cells.
 constexpr double kFarthestStep = 0.5;
 
+/// Cells in a step that nobody will miss: a tenth of a cell in a hundred thousand steps.
+constexpr double kStill = 1e-6;
+
 /// Points are sorted again once an edge may have moved this far, cells.
 constexpr double kTravelBetweenSorts = 0.5;
 

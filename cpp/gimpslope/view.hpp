@@ -117,6 +117,7 @@ struct HeldBody {
   double velocity[2], spin;
   double damping[2], damping_moment;  // N/m; N m/m
   double taken[2], taken_moment;      // by the nodes; N s/m; N m s/m
+  double unsettled;                   // change of its speed when they were last looked for, m/s
   bool touches;                       // a wall or another body
 };
 
@@ -165,7 +166,8 @@ struct BodiesView {
   Contact* contacts;
   int contact_room;
   int* contact_count;
-  bool* contacts_missed;  // for want of room
+  bool* contacts_missed;       // for want of room
+  double* contacts_unsettled;  // largest change of a speed in the last sweep, m/s
 };
 
 /// What a step works on. The points are kept in double or single precision; the grid, and all

@@ -275,6 +275,15 @@ void bind_solver(py::module_& m) {
              const auto* now = &s.get().bodies().states();
              return bodies_of(std::span(&now, 1));
            })
+      .def("unsettled",
+           [](Guarded& s) {
+             const Bodies& bodies = s.get().bodies();
+             const auto told = [](const Unsettled& of) {
+               return py::make_tuple(of.steps, of.largest, of.sum);
+             };
+             return py::dict(py::arg("interfaces") = told(bodies.interfaces_unsettled()),
+                             py::arg("contacts") = told(bodies.contacts_unsettled()));
+           })
       .def("body_numbers",
            [](Guarded& s) {
              const auto& found = s.get().bodies().numbers();

@@ -1,6 +1,7 @@
 """Warnings of runs that enter a region where a method is known to fail.
 
-Each names the mode of failure under which `gimpslope stability` measures and explains it.
+Each names the mode of failure under which `gimpslope stability` measures and explains it, but for
+that of impulses on rigid stones, which tells all that is known.
 """
 
 from __future__ import annotations
@@ -39,6 +40,10 @@ of the rate at which they part, with uGIMP, and from 2.5 on nothing (two a cell 
 NEAR_STONES = 2.0
 """Gap between stones, cells, below which deformable ones share nodes."""
 
+UNSETTLED = 0.1
+"""Cells that the last changes by impulses which did not settle come to, from which on it is warned
+of them; the edges of stones and soil are known no better."""
+
 
 class MethodWarning(UserWarning):
     """A run does what the method is known to do badly."""
@@ -52,8 +57,10 @@ def warn_at_start(setup: Setup, solver: Solver) -> None:
 
 
 def warn_at_end(setup: Setup, solver: Solver) -> None:
-    """Warn of what the places of the points tell once the slide is over."""
+    """Warn of what the places of the points and the impulses on rigid stones tell once the slide is
+    over."""
     _warn(_fracture(setup.scene, solver))
+    _warn(_unsettled(setup.scene, solver), page=False)
 
 
 def _blend(setup: Setup, step: float) -> Iterator[str]:
@@ -123,10 +130,22 @@ def _fracture(scene: Scene, solver: Solver) -> Iterator[str]:
         )
 
 
-def _warn(*messages: Iterator[str]) -> None:
+def _unsettled(scene: Scene, solver: Solver) -> Iterator[str]:
+    where = {"interfaces": "soil slides along rigid stones", "contacts": "rigid stones touch"}
+    for name, found in solver.unsettled.items():
+        if found.sum > UNSETTLED * scene.cell:
+            yield (
+                f"in {found.steps:,} of {solver.steps:,} steps the impulses where {where[name]} "
+                f"did not settle: their last changes alone come to {found.sum / scene.cell:.2g} "
+                "cells; fewer stones on top of each other, and wider ones, settle sooner"
+            )
+
+
+def _warn(*messages: Iterator[str], page: bool = True) -> None:
     for each in messages:
         for message in each:
-            text = f"{message} (`gimpslope stability {message.split(':')[0]}`)"
+            named = f" (`gimpslope stability {message.split(':')[0]}`)" if page else ""
+            text = f"{message}{named}"
             warnings.warn(text, MethodWarning, stacklevel=_outside())
 
 

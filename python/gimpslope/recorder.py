@@ -15,7 +15,7 @@ import numpy.typing as npt
 from tqdm import tqdm
 
 from . import _check
-from .io.atomic import uninterrupted
+from .interrupts import uninterrupted
 from .io.hdf5 import FIELDS, RIGID_STONES, SNAPSHOT_FIELDS, STAGES, Quantity, RunWriter
 from .run import Run
 from .solver import Diverged

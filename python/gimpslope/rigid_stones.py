@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -59,6 +60,22 @@ class RigidStones:
     def angular_impulse(self) -> FloatArray:
         """The same about the centre, N m s/m, shape (m,)."""
         return self.states[..., 8]
+
+
+class Unsettled(NamedTuple):
+    """Steps whose impulses on rigid stones had not settled when the iterations for them ended.
+
+    Attributes
+    ----------
+    steps : their number; those whose last change moves nothing by a millionth of a cell do not
+        count
+    largest, sum : how far the last change of a speed moves a stone against what it touches, m, in
+        one of these steps at most and in all of them; stones in a row add theirs
+    """
+
+    steps: int
+    largest: float
+    sum: float
 
 
 @dataclass(frozen=True, eq=False)

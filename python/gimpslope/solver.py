@@ -13,7 +13,7 @@ from ._check import FloatArray
 from .ledger import Ledger
 from .materials import Material
 from .method import Method
-from .rigid_stones import RigidStones
+from .rigid_stones import RigidStones, Unsettled
 from .scene import Points, Scene
 from .walls import Free, Walls
 
@@ -229,6 +229,13 @@ class Solver:
     def rigid_stones(self) -> RigidStones:
         """The stones of rigid material as they are now."""
         return RigidStones(self._core.body_numbers(), self._core.bodies()[0])
+
+    @property
+    def unsettled(self) -> dict[str, Unsettled]:
+        """Impulses on rigid stones that did not settle since the clock was last set to zero:
+        "interfaces", those of soil that slides along stones, and "contacts", those of stones that
+        touch each other or walls."""
+        return {name: Unsettled(*found) for name, found in self._core.unsettled().items()}
 
     def values(self, name: str, *, single: bool = False) -> npt.NDArray[np.floating[Any]]:
         """A field by the name of its property, such as "velocity", in the order in which the points

@@ -21,7 +21,8 @@ Mask = NDArray[np.bool_]
 
 HELD_SHARE = 0.0774  # of a cell, or of the largest share where that is below one
 SPREAD = 1e-3  # at a wall: by how much of its distance to the side a place counts as nearer
-SWEEPS = 30
+SWEEPS, MOST_SWEEPS = 30, 300
+STILL = 1e-6  # cells a step
 SEEN = 0.1  # gap of stones at which a contact begins to be watched, cells
 SURROUND = 1.5  # distance of the points that tell its normal, cells
 _SIGNS = np.array([-1.0, 1.0])
@@ -194,6 +195,7 @@ class Contact:
     normal: Array
     place: Array
     closing: float  # the speed that would close the gap in the step
+    still: float  # a speed that moves nothing in the step
     friction: float
     pushed: float = 0.0
     rubbed: float = 0.0
@@ -225,7 +227,7 @@ def _contacts_of(
         normal = line / np.hypot(*line)
         gap = float(between @ normal) - both
         if gap <= SEEN * cell and abs(cross(normal, between)) <= both:
-            yield Contact(a, b, normal, middle, max(gap, 0.0) / dt, friction)
+            yield Contact(a, b, normal, middle, max(gap, 0.0) / dt, STILL * cell / dt, friction)
 
 
 def shortest_between(a: Array, b: Array) -> Array:
@@ -267,7 +269,8 @@ def wall_contacts(
             normal = np.zeros(2)
             normal[axis] = -into
             most = {"fixed": 1e300, "coulomb": friction, "roller": 0.0}[kind]
-            yield Contact(number, None, normal, body.centre + arms[k], max(gap[k], 0.0) / dt, most)
+            closing, still = max(gap[k], 0.0) / dt, STILL * cell / dt
+            yield Contact(number, None, normal, body.centre + arms[k], closing, still, most)
 
 
 def resolve(
@@ -277,16 +280,21 @@ def resolve(
 ) -> None:
     """Impulses by which no body runs into what it touches: sequential iteration (Catto 2005).
 
-    The same algorithm as the kernel's, whose result after so many sweeps is part of the method: at
-    each contact in turn the impulse along the normal that leaves no closing speed beyond the one
-    that closes the gap, of which the sum may not pull; then the one across that ends the sliding,
-    of which the sum is at most the friction coefficient times the other. Between the sweeps each
-    body that touches something settles with the soil that slides along it.
+    The same algorithm as the kernel's, whose result after so many sweeps, or more while the last
+    one has moved something, is part of the method: at each contact in turn the impulse along the
+    normal that leaves no closing speed beyond the one that closes the gap, of which the sum may not
+    pull; then the one across that ends the sliding, of which the sum is at most the friction
+    coefficient times the other. Between the sweeps each body that touches something settles with
+    the soil that slides along it.
     """
     touching = sorted({b for c in contacts for b in (c.body, c.other) if b is not None})
-    for sweep in range(SWEEPS):
+    last, still = 0.0, min((contact.still for contact in contacts), default=0.0)
+    for sweep in range(MOST_SWEEPS):
+        if sweep >= SWEEPS and last <= still:
+            break
         for body in touching if sweep else ():
             settle(body)
+        last = 0.0
         for contact in contacts:
             sides = [(1.0, wholes[contact.body])]
             if contact.other is not None:
@@ -294,6 +302,7 @@ def resolve(
             speed, gain = _along(sides, contact.place, contact.normal)
             pushed = max(0.0, contact.pushed - (speed + contact.closing) / gain)
             _apply(sides, contact.place, (pushed - contact.pushed) * contact.normal)
+            last = max(last, abs(pushed - contact.pushed) * gain)
             contact.pushed = pushed
             if contact.friction == 0:
                 continue
@@ -302,6 +311,7 @@ def resolve(
             most = contact.friction * pushed
             rubbed = min(most, max(-most, contact.rubbed - speed / gain))
             _apply(sides, contact.place, (rubbed - contact.rubbed) * tangent)
+            last = max(last, abs(rubbed - contact.rubbed) * gain)
             contact.rubbed = rubbed
 
 

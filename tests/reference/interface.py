@@ -12,7 +12,8 @@ Mask = NDArray[np.bool_]
 
 TOUCH = 0.1  # largest gap, cells
 NO_SLOPE = 1e-3
-SETTLINGS = 20
+ROUNDING = 1e-12
+SETTLINGS, TURNS = 30, 100
 APART, SLIPPING, STUCK, WELDED = range(4)
 
 
@@ -91,28 +92,98 @@ class Interface:
 
     def settle(self) -> None:
         """The impulses that the soil takes, for the present motion of the whole with those that it
-        has taken so far: by Newton's method on a function that is linear for given meetings."""
+        has taken so far; `unsettled` is what they leave, as a speed of the stone."""
         motion = np.append(self.whole.velocity, self.whole.spin)
-        alone = motion + np.linalg.solve(self.inertia, self._sum(self.taken))
+        self.alone = motion + np.linalg.solve(self.inertia, self._sum(self.taken))
+        whole = self.alone @ self.inertia @ self.alone + self.mass @ (self.free**2).sum(axis=1)
+        self.unsettled = 0.0
+        if not self._settle_at_once(motion, ROUNDING**2 * whole):
+            self._settle_in_turn(ROUNDING**2 * whole)
+        result = self._moved()
+        self.whole.velocity, self.whole.spin = result[:2], float(result[2])
+
+    def _settle_at_once(self, motion: Array, nothing: float) -> bool:
+        """Newton's method on a function that is linear for given meetings, with steps halved as
+        long as they leave more than there was; whether it finds the motion."""
+        start, step, share, least = motion, np.zeros(3), 1.0, np.inf
         for settling in range(SETTLINGS):
-            apart = self.free - self.motion_at @ motion
-            meeting = self._meeting(apart)
-            slip = np.where(meeting == SLIPPING, np.sign(cross(self.normal, apart)), 0.0)
-            settled = settling > 0 and bool(
-                (meeting == self.meeting).all() and (slip == self.slip).all()
-            )
-            self.meeting, self.slip = meeting, slip
-            answer = self._answer()
-            self.taken = -np.einsum("kij,kj->ki", answer, apart)
-            if settled:
+            same = self._meet(motion)
+            left = self._energy(motion - self._moved())
+            if left <= nothing or (settling > 0 and share == 1.0 and same):
+                return True
+            if left < least:
+                start, step, share, least = motion, self._target() - motion, 1.0, left
+            else:
+                share /= 2
+            motion = start + share * step
+        return False
+
+    def _settle_in_turn(self, nothing: float) -> None:
+        """The impulse of one node after the other that meets the law if all others stay: inelastic
+        along the normal, and across it as much friction as is needed or can be had."""
+        self.taken = np.zeros_like(self.taken)
+        flexible, across = np.linalg.inv(self.inertia), quarter_turn(self.normal)
+        for _ in range(TURNS):
+            before = self._moved()
+            for k, at in enumerate(self.motion_at):
+                self.taken[k] = 0.0
+                apart = self.free[k] - at @ self._moved()
+                yields = np.eye(2) / self.mass[k] + at @ flexible @ at.T
+                frame = np.array([self.normal[k], across[k]])
+                if self.meeting[k] == WELDED:
+                    self.taken[k] = -np.linalg.solve(yields, apart)
+                    continue
+                pushed, self.meeting[k], self.slip[k] = self._met(
+                    frame @ apart, frame @ yields @ frame.T
+                )
+                self.taken[k] = pushed @ frame
+            left = self._energy(before - self._moved())
+            self.unsettled = 0.0 if left <= nothing else float(np.sqrt(left / self.body.mass))
+            if left <= nothing:
                 break
-            matrix = self.inertia + np.einsum(
-                "kia,kij,kjb->ab", self.motion_at, answer, self.motion_at
-            )
-            given = self.inertia @ alone + self._sum(np.einsum("kij,kj->ki", answer, self.free))
-            motion = np.linalg.solve(matrix, given)
-        motion = alone - np.linalg.solve(self.inertia, self._sum(self.taken))
-        self.whole.velocity, self.whole.spin = motion[:2], float(motion[2])
+
+    def _met(self, apart: Array, yields: Array) -> tuple[Array, int, float]:
+        """Impulse, meeting and slip of a node, along and across the normal: from its velocity
+        without the impulse, and the matrix by which that changes with it."""
+        rough = self.body.friction
+        assert rough is not None
+        if apart[0] >= 0:
+            return np.zeros(2), APART, 0.0
+        sticking = -np.linalg.solve(yields, apart)
+        if sticking[0] >= 0 and abs(sticking[1]) <= rough * sticking[0]:
+            return sticking, STUCK, 0.0
+        for slip in (1.0, -1.0):
+            along = np.array([1.0, -slip * rough])
+            pushing = yields[0] @ along
+            impulse = -apart[0] / pushing * along
+            if pushing > 0 and slip * (apart + yields @ impulse)[1] >= 0:
+                return impulse, SLIPPING, slip
+        return np.array([-apart[0] / yields[0, 0], 0.0]), SLIPPING, 0.0
+
+    def _energy(self, motion: Array) -> float:
+        """Twice the kinetic energy of the stone."""
+        return float(motion @ self.inertia @ motion)
+
+    def _meet(self, motion: Array) -> bool:
+        """The impulses at a motion of the stone; whether soil meets it and slips as before."""
+        apart = self.free - self.motion_at @ motion
+        meeting = self._meeting(apart)
+        slip = np.where(meeting == SLIPPING, np.sign(cross(self.normal, apart)), 0.0)
+        same = bool((meeting == self.meeting).all() and (slip == self.slip).all())
+        self.meeting, self.slip = meeting, slip
+        self.taken = -np.einsum("kij,kj->ki", self._answer(), apart)
+        return same
+
+    def _moved(self) -> Array:
+        """The stone's motion with the impulses."""
+        return np.asarray(self.alone - np.linalg.solve(self.inertia, self._sum(self.taken)))
+
+    def _target(self) -> Array:
+        """The motion whose impulses lead to it, if the meetings stay."""
+        answer, at = self._answer(), self.motion_at
+        matrix = self.inertia + np.einsum("kia,kij,kjb->ab", at, answer, at)
+        given = self.inertia @ self.alone + self._sum(np.einsum("kij,kj->ki", answer, self.free))
+        return np.asarray(np.linalg.solve(matrix, given))
 
     def velocity(self) -> Array:
         """Of the soil after the impulses, (k, 2)."""

@@ -11,10 +11,8 @@ import pytest
 from made_convergence import CELLS, power, series, study
 from matplotlib.colors import to_hex
 
-from gimpslope.energy import Energy
 from gimpslope.studies.converge import figures, output, tables
 from gimpslope.studies.converge.limits import meet, reference
-from gimpslope.studies.converge.quantities import parabola_top
 from gimpslope.studies.richardson import Extrapolation
 
 FIRST, SECOND = power(10.0, 5.0, 1.0), power(10.0, -20.0, 2.0)
@@ -201,23 +199,3 @@ def test_numbers_as_json(tmp_path: Path) -> None:
     assert plain["limits_agree"]["total"] == {"softened, rigid": True}
     assert plain["surfaces_apart"]["softened, rigid"][2] == [pytest.approx(0.7)]
     assert plain["cells"] == list(CELLS)
-
-
-def rows_of_energy(time: np.ndarray, kinetic: np.ndarray) -> Energy:
-    nothing = np.zeros_like(time)
-    return Energy(Path(), time, nothing.astype(np.int64), kinetic, nothing, nothing, nothing)
-
-
-def test_the_peak_lies_between_rows() -> None:
-    time = np.arange(0.0, 3.0, 0.005)
-    top = parabola_top(rows_of_energy(time, 5.0 - 20.0 * (time - 1.6012) ** 2))
-    assert top.time == pytest.approx(1.6012) and top.value == pytest.approx(5.0)
-
-
-def test_a_peak_without_a_parabola_is_its_row() -> None:
-    """Of a slide that grows the faster the longer, and is lower in the last row alone."""
-    time = np.arange(0.0, 3.0, 0.005)
-    kinetic = np.exp(20 * time)
-    kinetic[-1] = kinetic[-3]
-    top = parabola_top(rows_of_energy(time, kinetic))
-    assert top == (time[-2], kinetic[-2])

@@ -312,14 +312,15 @@ def test_an_error_aside_is_raised_by_the_next_write_and_loses_nothing(
     np.testing.assert_array_equal(hdf5.read_energy(writer.path)["time"], np.arange(3.0))
 
 
-def test_ctrl_c_waits_for_the_end_of_a_write(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_wait_for_the_end_of_a_write(tmp_path: Path, number: signal.Signals) -> None:
     writer = synthetic.new_writer(tmp_path / "a.h5")
     writer.append_energy(synthetic.energy_rows(0, np.arange(3.0)))
-    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # it may be ignored
+    before = signal.signal(number, signal.default_int_handler)  # it may be ignored
     try:
         with pytest.raises(KeyboardInterrupt), writer._flushed():
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(number)
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.signal(number, before)
     writer.flush()
     np.testing.assert_array_equal(hdf5.read_energy(writer.path)["time"], np.arange(3.0))

@@ -12,8 +12,6 @@ import pytest
 
 import gimpslope as gs
 from gimpslope import planning
-from gimpslope.analysis import smooth_peak
-from gimpslope.energy import Energy
 from gimpslope.planning import Estimate, blend, grids, savings, search, stones
 from gimpslope.planning.cost import seconds
 from gimpslope.planning.pilot import Pilot
@@ -71,26 +69,6 @@ def test_nothing_is_said_of_what_is_not_there(raw: tuple[float, ...]) -> None:
     assert found.shown == "not reached"
 
 
-def energy(kinetic: np.ndarray, time: np.ndarray) -> Energy:
-    flat = np.zeros_like(time)
-    return Energy(Path("made"), time, flat.astype(int), kinetic, flat, flat, 1.0 + time)
-
-
-def test_peak_through_the_noise_of_its_rows() -> None:
-    time = np.arange(0.0, 3.0, 0.005)
-    rough = 1e-3 * np.sin(2 * np.pi * time / 0.02)
-    found = smooth_peak(energy(1e5 * (1 - (time - 1.603) ** 2 + rough), time))
-    assert found is not None
-    assert found.time == pytest.approx(1.603, abs=1e-3)
-    assert found.kinetic == pytest.approx(1e5, rel=1e-4)
-    assert found.max_speed == pytest.approx(2.603, abs=1e-3)
-
-
-def test_no_peak_while_energy_grows() -> None:
-    time = np.arange(0.0, 1.0, 0.005)
-    assert smooth_peak(energy(time**2, time)) is None
-
-
 @pytest.mark.parametrize("given", [{"alpha": 0.02}, {"relaxation_time": 0.03}, {"viscosity": 0.1}])
 def test_blend_is_held_as_the_viscosity_it_has(given: dict[str, float]) -> None:
     scene = reference.slope(cell=0.8)
@@ -134,6 +112,20 @@ def test_a_blend_beyond_all_of_pic_takes_shorter_steps() -> None:
     assert gs.Solver.of(scene, blend.within_limits(scene, method)).alpha == pytest.approx(0.9)
     gentle = replace(method, viscosity=0.5)
     assert blend.within_limits(scene, gentle) is gentle
+
+
+@pytest.mark.parametrize(("share", "first"), [(0.6, 0.6), (1.0, 0.9)])
+def test_steps_are_no_longer_than_the_blend_allows_on_the_coarsest_grid(
+    monkeypatch: pytest.MonkeyPatch, share: float, first: float
+) -> None:
+    """A step twice as long would need twice the share."""
+    scene = gs.Scene(gs.Outline.slope(2, 1), reference.soil(), cell=0.5)
+    assert grids.coarsest(scene) == scene
+    posed = pose(scene, 0.5, gs.Method(alpha=share), gs.Stages(), until_rest=False)
+    same = (1.0, 1.0)
+    found = tried(monkeypatch, posed.setup, same, same, same)
+    for setup, expected in ((posed.setup, first), (found.setup, 0.9)):
+        assert gs.Solver.of(scene, setup.method).alpha == pytest.approx(expected, rel=1e-4)
 
 
 def with_stones(gap: float, rock: gs.Material, cell: float = 0.2) -> gs.Scene:

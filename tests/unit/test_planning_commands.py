@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -57,6 +61,31 @@ def test_command(
     assert gs.open("fine.h5").status == "finished"
     assert cli.main([*words, "--output", "fine.h5"]) == 2
     assert "--output must be a new file" in capsys.readouterr().err
+
+
+def test_a_plan_that_is_terminated_takes_its_pilots_along(tmp_path: Path) -> None:
+    """Also one in the background of a script, where Ctrl-C is ignored."""
+    pilots = tmp_path / "pilots"
+    pilots.mkdir()
+    plan = ["plan", "soil", "--error", "0.001", "--output", str(tmp_path / "soil.h5")]
+    process = subprocess.Popen(
+        ["sh", "-c", "trap '' INT; exec \"$@\"", "", sys.executable, "-m", "gimpslope.cli", *plan],
+        env=os.environ | {"TMPDIR": str(pilots)},
+        stderr=subprocess.PIPE,
+    )
+    try:
+        deadline = time.monotonic() + 25
+        while not list(pilots.glob("gimpslope_*/*.h5")) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert list(pilots.glob("gimpslope_*/*.h5")), "no pilot has begun"
+        process.terminate()
+        _, errors = process.communicate(timeout=10)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 130
+    assert errors.decode().endswith("gimpslope: interrupted\n") and b"Traceback" not in errors
+    assert list(pilots.iterdir()) == []
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import gimpslope as gs
-from gimpslope import cli
+from gimpslope import cli, interrupts
 from gimpslope.io import atomic, hdf5
 from gimpslope.studies import parallel, planned, reference, reproduce
 
@@ -122,18 +122,19 @@ def test_ctrl_c_ends_all_runs_and_keeps_them(tmp_path: Path) -> None:
     assert [gs.open(path).status for path in (first, second)] == ["interrupted", "interrupted"]
 
 
-def test_ctrl_c_is_not_lost_where_python_ignores_exceptions() -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_signals_are_not_lost_where_python_ignores_exceptions(number: signal.Signals) -> None:
     """In a finaliser it would be an exception that nobody sees."""
 
     class Callback:
         def __del__(self) -> None:
-            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), number)
 
-    before = signal.getsignal(signal.SIGINT)
-    with parallel._interrupts() as came:
+    before = signal.getsignal(number)
+    with interrupts.caught() as came:
         Callback()
-        assert came == [signal.SIGINT]
-    assert signal.getsignal(signal.SIGINT) is before
+        assert came == [number]
+    assert signal.getsignal(number) is before
 
 
 def test_runs_end_with_a_study_that_is_killed_and_nothing_is_written_twice(

@@ -183,12 +183,13 @@ def test_interrupted_slide_leaves_all_that_was_computed(tmp_path: Path) -> None:
     assert run.summary["point_steps_per_second"] > 0
 
 
-def test_interrupted_while_gravity_grows(tmp_path: Path) -> None:
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_interrupted_while_gravity_grows(tmp_path: Path, number: signal.Signals) -> None:
     path = tmp_path / "gravity.h5"
     with command(path) as process:
         wait_for(path, "points", process)
         time.sleep(0.3)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
         start = time.monotonic()
         _, errors = process.communicate(timeout=10)
         assert time.monotonic() - start < 2.0

@@ -7,7 +7,7 @@
 #include "../travel.hpp"
 #include "body_terms.hpp"
 #include "held_nodes.hpp"
-#include "interface.hpp"
+#include "settling.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -77,7 +77,7 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
   held.inertia =
       inertia - mass * (held.centre[0] * held.centre[0] + held.centre[1] * held.centre[1]);
   held.spin = (turn - cross(held.centre, Pair(momentum[0], momentum[1]))) / held.inertia;
-  held.taken[0] = held.taken[1] = held.taken_moment = 0.0;
+  held.taken[0] = held.taken[1] = held.taken_moment = held.unsettled = 0.0;
   held.touches = false;
   if (slides) settle_nodes(all, body);
 }

@@ -4,15 +4,16 @@
 
 #include <cmath>
 
+#include "../travel.hpp"
 #include "../view.hpp"
 #include "body_terms.hpp"
-#include "interface.hpp"
+#include "settling.hpp"
 #include "stone_contacts.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-constexpr int kContactSweeps = 30;
+constexpr int kFewestSweeps = 30, kMostSweeps = 300;
 
 /// Contacts of a body with a wall: its nearest place to either side of its centre, so that it can
 /// neither run into it nor turn into it.
@@ -69,7 +70,54 @@ inline void push(HeldBody& body, const double* arm, const Pair& impulse) {
   body.spin += cross(arm, impulse) / body.inertia;
 }
 
-/// Impulses at contacts, by which no body runs into what it touches.
+/// The impulses at one contact that end what its bodies do there; by how much they change a speed,
+/// m/s.
+inline double part(const BodiesView& all, Contact& contact) {
+  HeldBody* bodies[2] = {&all.held[contact.body],
+                         contact.other < 0 ? nullptr : &all.held[contact.other]};
+  const double* places[2] = {all.state[contact.body].centre,
+                             contact.other < 0 ? nullptr : all.state[contact.other].centre};
+  double arm[2][2] = {};
+  for (int side = 0; side < 2 && bodies[side] != nullptr; ++side)
+    for (int c = 0; c < 2; ++c)
+      arm[side][c] = contact.place[c] - places[side][c] - bodies[side]->centre[c];
+  const auto along = [&](const Pair& direction) {  // speed, and what a unit impulse adds to it
+    double speed = 0.0, gain = 0.0;
+    for (int side = 0; side < 2 && bodies[side] != nullptr; ++side) {
+      const HeldBody& b = *bodies[side];
+      const double moment = cross(arm[side], direction);
+      const Pair v = velocity_at(b.velocity, b.spin, arm[side]);
+      speed += (side == 0 ? 1.0 : -1.0) * (v * direction).sum();
+      gain += 1.0 / b.mass + moment * moment / b.inertia;
+    }
+    return Pair(speed, gain);
+  };
+  const auto apply = [&](const Pair& impulse) {
+    push(*bodies[0], arm[0], impulse);
+    if (bodies[1] != nullptr) push(*bodies[1], arm[1], -impulse);
+  };
+  const Pair normal(contact.normal[0], contact.normal[1]);
+  const Pair tangent(-normal[1], normal[0]);
+  const Pair closing = along(normal);
+  const double pushed = contact.pushed - (closing[0] + contact.closing) / closing[1];
+  const double whole = pushed > 0.0 ? pushed : 0.0;
+  apply((whole - contact.pushed) * normal);
+  const double parted = std::fabs(whole - contact.pushed) * closing[1];
+  contact.pushed = whole;
+  if (contact.friction == 0.0) return parted;
+  const Pair sliding = along(tangent);
+  const double most = contact.friction * contact.pushed;
+  double rubbed = contact.rubbed - sliding[0] / sliding[1];
+  if (contact.pushed == 0.0) rubbed = 0.0;
+  rubbed = rubbed > most ? most : (rubbed < -most ? -most : rubbed);
+  apply((rubbed - contact.rubbed) * tangent);
+  const double held = std::fabs(rubbed - contact.rubbed) * sliding[1];
+  contact.rubbed = rubbed;
+  return parted > held ? parted : held;
+}
+
+/// Impulses at contacts, by which no body runs into what it touches: as many sweeps as do as a
+/// rule, and more while the last one has moved a body, which light ones in heavy soil take.
 inline void resolve_contacts(const View<double>& view, const StepInput& input) {
   const BodiesView& all = *view.bodies;
   *all.contact_count = 0;
@@ -82,49 +130,16 @@ inline void resolve_contacts(const View<double>& view, const StepInput& input) {
     all.held[contact.body].touches = true;
     if (contact.other >= 0) all.held[contact.other].touches = true;
   }
-  for (int sweep = 0; sweep < kContactSweeps; ++sweep) {
+  const double still = kStill * view.grid.cell / input.dt;
+  double& last = *all.contacts_unsettled;
+  last = 0.0;
+  for (int sweep = 0; sweep < kFewestSweeps || (last > still && sweep < kMostSweeps); ++sweep) {
     for (int body = 0; sweep > 0 && body < all.count; ++body)
       if (all.held[body].touches && all.friction[body] >= 0.0) settle_nodes(all, body);
+    last = 0.0;
     for (int k = 0; k < *all.contact_count; ++k) {
-      Contact& contact = all.contacts[k];
-      HeldBody* bodies[2] = {&all.held[contact.body],
-                             contact.other < 0 ? nullptr : &all.held[contact.other]};
-      const double* places[2] = {all.state[contact.body].centre,
-                                 contact.other < 0 ? nullptr : all.state[contact.other].centre};
-      double arm[2][2] = {};
-      for (int side = 0; side < 2 && bodies[side] != nullptr; ++side)
-        for (int c = 0; c < 2; ++c)
-          arm[side][c] = contact.place[c] - places[side][c] - bodies[side]->centre[c];
-      const auto along = [&](const Pair& direction) {  // speed, and what a unit impulse adds to it
-        double speed = 0.0, gain = 0.0;
-        for (int side = 0; side < 2 && bodies[side] != nullptr; ++side) {
-          const HeldBody& b = *bodies[side];
-          const double moment = cross(arm[side], direction);
-          const Pair v = velocity_at(b.velocity, b.spin, arm[side]);
-          speed += (side == 0 ? 1.0 : -1.0) * (v * direction).sum();
-          gain += 1.0 / b.mass + moment * moment / b.inertia;
-        }
-        return Pair(speed, gain);
-      };
-      const auto apply = [&](const Pair& impulse) {
-        push(*bodies[0], arm[0], impulse);
-        if (bodies[1] != nullptr) push(*bodies[1], arm[1], -impulse);
-      };
-      const Pair normal(contact.normal[0], contact.normal[1]);
-      const Pair tangent(-normal[1], normal[0]);
-      const Pair closing = along(normal);
-      const double pushed = contact.pushed - (closing[0] + contact.closing) / closing[1];
-      const double whole = pushed > 0.0 ? pushed : 0.0;
-      apply((whole - contact.pushed) * normal);
-      contact.pushed = whole;
-      if (contact.friction == 0.0) continue;
-      const Pair sliding = along(tangent);
-      const double most = contact.friction * contact.pushed;
-      double rubbed = contact.rubbed - sliding[0] / sliding[1];
-      if (contact.pushed == 0.0) rubbed = 0.0;
-      rubbed = rubbed > most ? most : (rubbed < -most ? -most : rubbed);
-      apply((rubbed - contact.rubbed) * tangent);
-      contact.rubbed = rubbed;
+      const double change = part(all, all.contacts[k]);
+      last = change > last ? change : last;
     }
   }
 }

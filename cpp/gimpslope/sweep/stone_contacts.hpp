@@ -12,7 +12,6 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 constexpr double kSeen = 0.1;      // gap at which a contact begins to be watched, cells
 constexpr double kSurround = 1.5;  // distance of the points that tell a normal, cells
-constexpr int kMostSupports = 20;
 
 /// Some points of a body.
 struct Crowd {
@@ -72,22 +71,34 @@ inline Pair nearest_on(const Pair& p, const Pair& q) {
   return p + (t < 0.0 ? 0.0 : (t > 1.0 ? 1.0 : t)) * along;
 }
 
+/// Whether the origin lies within a triangle.
+inline bool surround_origin(const Pair& p, const Pair& q, const Pair& r) {
+  const auto side = [](const Pair& from, const Pair& to) {
+    return from[0] * to[1] - from[1] * to[0];
+  };
+  const double a = side(p, q), b = side(q, r), c = side(r, p);
+  return (a > 0.0 && b > 0.0 && c > 0.0) || (a < 0.0 && b < 0.0 && c < 0.0);
+}
+
 /// From b to a, the shortest line between the convex hulls of the points of both around a place
 /// (Gilbert, Johnson and Keerthi 1988), which is normal to the line that parts them with the widest
-/// margin; zero where they overlap. Starts with a line between two of them.
+/// margin; zero where they overlap. Starts with a line between two of them; each line is shorter
+/// than the one before, and there is a finite number of them.
 inline Pair shortest_between(const Crowd& a, const Crowd& b, const Pair& place, double reach,
                              Pair line) {
   Pair first = line, second = line;
-  for (int support = 0; support < kMostSupports; ++support) {
+  for (;;) {
     const Pair tip = a.at(a.farthest(-line, place, reach)) - b.at(b.farthest(line, place, reach));
     const double square = line.square().sum();
     if (square - (line * tip).sum() <= 1e-12 * square) return line;
+    if (surround_origin(first, second, tip)) return Pair::Zero();
     const Pair one = nearest_on(first, tip), other = nearest_on(second, tip);
     const bool take_first = one.square().sum() <= other.square().sum();
     (take_first ? second : first) = tip;
-    line = take_first ? one : other;
+    const Pair shorter = take_first ? one : other;
+    if (!(shorter.square().sum() < square)) return line;  // but for rounding
+    line = shorter;
   }
-  return Pair::Zero();
 }
 
 /// Contacts of two bodies: at each point of the first that nearly touches one of the second.

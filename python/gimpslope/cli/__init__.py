@@ -10,6 +10,7 @@ from typing import TextIO
 
 import gimpslope as gs
 
+from ..interrupts import terminable
 from ..studies.parallel import RunFailed
 from . import bench, converge, export, info, plan, reproduce, run, stability, tradeoff, verify
 
@@ -29,8 +30,13 @@ _COMMANDS = (
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code is 0, 2 for refused arguments, 1 for a failed run or a
-    check that does not hold, and 130 for one that was interrupted."""
+    check that does not hold, and 130 for one that was interrupted, by Ctrl-C or SIGTERM."""
     options = _parser().parse_args(arguments)
+    with terminable():
+        return _run(options)
+
+
+def _run(options: argparse.Namespace) -> int:
     prepare: Callable[[argparse.Namespace], Callable[[], int]] = options.prepare
     try:
         command = prepare(options)

@@ -16,12 +16,9 @@ The signatures are those of the HDF5 file format specification, version 3.0, sec
 from __future__ import annotations
 
 import io
-import signal
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from types import FrameType
 from typing import TYPE_CHECKING
 
 import h5py
@@ -42,22 +39,6 @@ def change(path: Path) -> Iterator[h5py.File]:
         with h5py.File(staged, mode, libver="earliest") as file:
             yield file
         staged.commit()
-
-
-@contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Hold back Ctrl-C until the block has ended, then let it act as before."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    held: list[tuple[int, FrameType | None]] = []
-    before = signal.signal(signal.SIGINT, lambda *arguments: held.append(arguments))
-    try:
-        yield
-    finally:
-        signal.signal(signal.SIGINT, before or signal.SIG_DFL)
-    if held and callable(before):
-        before(*held[0])
 
 
 class _StagedFile(io.RawIOBase):

@@ -62,10 +62,12 @@ def pose(
     if not until_rest:
         slide = past_the_peak(slide)
         reasons.append("the slide ends when its kinetic energy has passed its peak by a tenth")
+    coarsest = grids.coarsest(scene)
+    stepped = replace(held, time_step=None, courant=_courant(scene, held))
     return Problem(
         Setup(
-            grids.coarsest(scene),
-            replace(held, time_step=None, courant=_courant(scene, held)),
+            coarsest,
+            blend.within_limits(coarsest, stepped),
             replace(stages, slide=slide),
             Recording(snapshot_interval=slide.duration / _SNAPSHOTS),
         ),

@@ -16,6 +16,7 @@ import numpy as np
 
 from ..setup import Setup
 from ..stages import Gravity
+from . import blend
 from .pilot import Pilot, change, fly
 from .target import Target
 
@@ -27,10 +28,10 @@ _COURANT = 0.8
 
 
 class Saving(NamedTuple):
-    """A change of a setup and what it is called."""
+    """A change of a setup, and what it has done to one."""
 
-    title: str
     apply: Callable[[Setup], Setup]
+    told: Callable[[Setup], str]
 
 
 def _gravity_at_once(setup: Setup) -> Setup:
@@ -38,14 +39,16 @@ def _gravity_at_once(setup: Setup) -> Setup:
 
 
 def _long_steps(setup: Setup) -> Setup:
+    """Steps of the Courant number 0.8, or the largest one that the blend allows."""
     kind, number = setup.method.step
     assert kind == "courant"
-    return replace(setup, method=replace(setup.method, courant=max(number, _COURANT)))
+    longer = blend.within_limits(setup.scene, replace(setup.method, courant=_COURANT))
+    return setup if longer.step[1] <= number else replace(setup, method=longer)
 
 
 SAVINGS = (
-    Saving("gravity is applied at once", _gravity_at_once),
-    Saving(f"the Courant number is {_COURANT}", _long_steps),
+    Saving(_gravity_at_once, lambda _: "gravity is applied at once"),
+    Saving(_long_steps, lambda setup: f"the Courant number is {setup.method.step[1]:.2g}"),
 )
 
 
@@ -81,14 +84,15 @@ def save(setup: Setup, target: Target, directory: Path) -> Saved:
         pilot = fly(changed, directory / f"saving_{number}.h5", names)
         found = change(pilot, plain)
         changes = {name: _ON_THE_THIRD * size for name, size in found.items()}
+        told = saving.told(changed)
         worst = float(np.max(list(changes.values())))  # NaN if one of them is
         if worst <= _SHARE * target.error:
-            reason = f"{saving.title}: that changes no quantity by more than {worst:.1g} of itself"
+            reason = f"{told}: that changes no quantity by more than {worst:.1g} of itself"
             saved = Saved(changed, pilot, changes, (*saved.reasons, reason), saved.seconds)
         else:
             known = math.isfinite(worst)
             size = f"by {worst:.1g} of itself" if known else "that is not reached, or 0"
-            reason = f"not kept: {saving.title}, which changes a quantity {size}"
+            reason = f"not kept: {told}, which changes a quantity {size}"
             saved = replace(saved, reasons=(*saved.reasons, reason))
         saved = replace(saved, seconds=saved.seconds + pilot.seconds)
     return saved

@@ -9,12 +9,12 @@ import sys
 import threading
 import time
 import warnings
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from multiprocessing.process import BaseProcess
 
 from tqdm import tqdm
 
+from ..interrupts import caught
 from ..io import hdf5
 from ..run import Run
 from .planned import Planned
@@ -31,9 +31,9 @@ class RunFailed(RuntimeError):
 def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> list[Run]:
     """Make the runs that are not there yet, at most `jobs` at a time; all of them, in order.
 
-    Ctrl-C stops those that are going, each of which keeps what it has computed; so does the end of
-    this process. A script that calls this needs `if __name__ == "__main__":`, for the processes
-    import it.
+    Ctrl-C or SIGTERM stops those that are going, each of which keeps what it has computed; so does
+    the end of this process. A script that calls this needs `if __name__ == "__main__":`, for the
+    processes import it.
 
     Raises
     ------
@@ -46,7 +46,7 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
     bar = tqdm(total=total, desc="slides", bar_format=_BAR, disable=not progress)
     try:
         queue = list(waiting)
-        with _interrupts() as interrupts:
+        with caught() as came:
             while queue or going:
                 while queue and len(going) < jobs:
                     one = queue.pop(0)
@@ -55,7 +55,7 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
                 going = {path: process for path, process in going.items() if process.is_alive()}
                 begun = [one for one in waiting if one not in queue]
                 bar.update(max(sum(map(_time_reached, begun)) - bar.n, 0.0))
-                if interrupts:
+                if came:
                     raise KeyboardInterrupt
     except BaseException:
         _stop(going.values())
@@ -63,21 +63,6 @@ def run_all(planned: Sequence[Planned], *, jobs: int, progress: bool = True) -> 
     finally:
         bar.close()
     return [_finished(one) for one in planned]
-
-
-@contextmanager
-def _interrupts() -> Iterator[list[int]]:
-    """The Ctrl-C that came, to be looked at in good time: as an exception one is lost where Python
-    ignores those, as in a callback of HDF5."""
-    came: list[int] = []
-    if threading.current_thread() is not threading.main_thread():
-        yield came
-        return
-    before = signal.signal(signal.SIGINT, lambda number, _: came.append(number))
-    try:
-        yield came
-    finally:
-        signal.signal(signal.SIGINT, before or signal.SIG_DFL)
 
 
 def _start(planned: Planned) -> BaseProcess:

@@ -15,7 +15,8 @@ import h5py
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..atomic import change, uninterrupted
+from ...interrupts import uninterrupted
+from ..atomic import change
 from .layout import (
     ENERGY,
     FIELDS,

@@ -6,10 +6,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..._check import FloatArray
-from ...energy import Energy, Peak
+from ...analysis import SmoothPeak, smooth_peak
 from ...run import Run
 from ...summary import smallest_gap
 from ..reproduce.measures import RUN_OUT
@@ -34,9 +32,6 @@ QUANTITIES = tuple(
     for one in (*(one for name in _CHOSEN for one in OF_THE_STUDY if one.figure == name), *_OWN)
 )
 """With a digit more than the study shows, for fine grids differ by little."""
-
-_NEAR_PEAK = 0.05  # s
-_PEAK = ("peak_energy", "peak_time", "peak_speed")
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,13 +58,12 @@ class Measured:
 
 def measure(run: Run, width: float) -> Measured:
     """A run, its surface over columns of a width, m."""
-    phases, timing, gap = run.phases(), run.attributes["timing"], smallest_gap(run.scene)
+    peak, rests = smooth_peak(run.energy), run.phases().rest is not None
+    timing, gap = run.attributes["timing"], smallest_gap(run.scene)
     nothing = dict.fromkeys((one.figure for one in QUANTITIES), math.nan)
     return Measured(
-        nothing
-        | ({} if phases.peak is None else _at_the_peak(run.energy))
-        | ({} if phases.rest is None else _in_the_end(run)),
-        None if phases.rest is None else heights(run, width),
+        nothing | ({} if peak is None else _at(peak)) | (_in_the_end(run) if rests else {}),
+        heights(run, width) if rests else None,
         math.nan if gap is None else gap,
         len(run.points),
         timing["point_steps"],
@@ -77,24 +71,12 @@ def measure(run: Run, width: float) -> Measured:
     )
 
 
-def _at_the_peak(energy: Energy) -> dict[str, float]:
-    top = parabola_top(energy)
-    return dict(zip(_PEAK, (top.value / 1e3, top.time, energy.speed_at_peak), strict=True))
-
-
-def parabola_top(energy: Energy) -> Peak:
-    """Time (s) and height (J/m) of the kinetic energy's peak: of a parabola through the rows near
-    it, for a row every 5 ms is coarser than the differences between fine grids; of the highest row
-    where that parabola has no top among these rows."""
-    peak = energy.peak
-    since = energy.time - peak.time
-    near = np.abs(since) <= _NEAR_PEAK
-    if near.sum() < 3:
-        return peak
-    a, b, c = np.polyfit(since[near], energy.kinetic[near], 2)
-    if a >= 0 or abs(top := -b / (2 * a)) > _NEAR_PEAK:
-        return peak
-    return Peak(float(peak.time + top), float(c - b**2 / (4 * a)))
+def _at(peak: SmoothPeak) -> dict[str, float]:
+    return {
+        "peak_energy": peak.kinetic / 1e3,
+        "peak_time": peak.time,
+        "peak_speed": peak.max_speed,
+    }
 
 
 def _in_the_end(run: Run) -> dict[str, float]:

@@ -108,5 +108,5 @@ def run(task: Task) -> Row:
     except (Diverged, NotSettledError) as failed:
         return Row(case, number, math.inf, math.nan, str(failed))
     if not math.isfinite(solution.error):
-        return Row(case, number, math.inf, math.nan, "the motion is not finite")
+        return Row(case, number, math.inf, math.nan, "what is measured is not finite")
     return Row(case, number, *solution)

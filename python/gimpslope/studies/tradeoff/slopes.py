@@ -7,6 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
+from ...analysis import smooth_peak
 from ...materials import DruckerPrager
 from ...method import Method
 from ...outline import Outline
@@ -17,7 +18,6 @@ from ...simulation import Simulation
 from ...stages import Slide, Stages
 from ...stones import Ellipse
 from .. import reference
-from ..converge.quantities import parabola_top
 from ..stopwatch import Stopwatch
 
 READING = "identified"
@@ -32,7 +32,7 @@ DURATIONS = {"a": 10.0, "stone": 1.2}  # s
 
 class Figures(NamedTuple):
     """What a slide is judged by: peak of the kinetic energy (J/m), its time (s), and the largest
-    displacement in the end (m), of slope A the vertical one."""
+    displacement in the end (m), of slope A the vertical one. NaN for a peak that is not reached."""
 
     energy: float
     time: float
@@ -90,6 +90,7 @@ def _slide(setup: Setup, *, vertical: bool) -> Slid:
         recorder = Recorder(simulation, Path(folder) / "slope.h5", progress=False)
         with watch:
             run = simulation.run(recorder)
-        peak, moved = parabola_top(run.energy), run.max_displacement()
+        peak, moved = smooth_peak(run.energy), run.max_displacement()
     far = moved.vertical if vertical else moved.total
-    return Slid(Figures(peak.value, peak.time, far), watch.core_seconds)
+    energy, time = (math.nan, math.nan) if peak is None else (peak.kinetic, peak.time)
+    return Slid(Figures(energy, time, far), watch.core_seconds)

@@ -1,0 +1,52 @@
+"""Ctrl-C and SIGTERM, by which a process is to end in good order."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from types import FrameType
+
+_BOTH = (signal.SIGINT, signal.SIGTERM)
+
+
+@contextmanager
+def terminable() -> Iterator[None]:
+    """Let SIGTERM do what Ctrl-C does, for as long as the block lasts."""
+    with _answered([signal.SIGTERM], signal.default_int_handler):
+        yield
+
+
+@contextmanager
+def uninterrupted() -> Iterator[None]:
+    """Hold both back until the block has ended, then let them act as before."""
+    with caught() as came:
+        yield
+    for number in came:
+        signal.raise_signal(number)
+
+
+@contextmanager
+def caught() -> Iterator[list[int]]:
+    """Those that came since the block began, to be looked at in good time: as an exception one is
+    lost where Python ignores those, as in a callback of HDF5."""
+    came: list[int] = []
+    with _answered(_BOTH, lambda number, _: came.append(number)):
+        yield came
+
+
+@contextmanager
+def _answered(
+    numbers: Sequence[signal.Signals], answer: Callable[[int, FrameType | None], object]
+) -> Iterator[None]:
+    """Python lets the main thread alone answer signals; in any other one nothing is changed."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, answer) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, old in before.items():
+            signal.signal(number, old or signal.SIG_DFL)
