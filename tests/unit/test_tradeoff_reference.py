@@ -28,6 +28,6 @@ def test_limits_of_the_slope_with_a_stone() -> None:
     for (full, rigid), (limit, uncertainty) in zip(found, known, strict=True):
         assert meet(full, rigid)
         surest = reference("full", {"full": full, "rigid": rigid})
-        assert surest is not None and surest.model == "rigid"
+        assert surest is not None
         assert surest.limit == pytest.approx(limit, rel=1e-3)
         assert surest.uncertainty == pytest.approx(uncertainty, rel=2e-2)
