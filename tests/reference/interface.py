@@ -13,7 +13,7 @@ Mask = NDArray[np.bool_]
 TOUCH = 0.1  # largest gap, cells
 NO_SLOPE = 1e-3
 ROUNDING = 1e-12
-SETTLINGS, TURNS = 30, 100
+SETTLINGS, FEWEST_ROUNDS, MOST_ROUNDS = 30, 5, 80
 APART, SLIPPING, STUCK, WELDED = range(4)
 
 
@@ -96,9 +96,14 @@ class Interface:
         motion = np.append(self.whole.velocity, self.whole.spin)
         self.alone = motion + np.linalg.solve(self.inertia, self._sum(self.taken))
         whole = self.alone @ self.inertia @ self.alone + self.mass @ (self.free**2).sum(axis=1)
-        self.unsettled = 0.0
-        if not self._settle_at_once(motion, ROUNDING**2 * whole):
-            self._settle_in_turn(ROUNDING**2 * whole)
+        nothing, rounds = ROUNDING**2 * whole, FEWEST_ROUNDS
+        while not self._settle_at_once(motion, nothing):
+            self.unsettled = self._settle_in_turn(rounds, nothing)
+            if self.unsettled == 0 or rounds >= MOST_ROUNDS:
+                break
+            motion, rounds = self._moved(), 2 * rounds
+        else:
+            self.unsettled = 0.0
         result = self._moved()
         self.whole.velocity, self.whole.spin = result[:2], float(result[2])
 
@@ -118,12 +123,13 @@ class Interface:
             motion = start + share * step
         return False
 
-    def _settle_in_turn(self, nothing: float) -> None:
+    def _settle_in_turn(self, rounds: int, nothing: float) -> float:
         """The impulse of one node after the other that meets the law if all others stay: inelastic
-        along the normal, and across it as much friction as is needed or can be had."""
+        along the normal, and across it as much friction as is needed or can be had. The change by
+        the last round, as a speed of the stone."""
         self.taken = np.zeros_like(self.taken)
         flexible, across = np.linalg.inv(self.inertia), quarter_turn(self.normal)
-        for _ in range(TURNS):
+        for _ in range(rounds):
             before = self._moved()
             for k, at in enumerate(self.motion_at):
                 self.taken[k] = 0.0
@@ -138,9 +144,7 @@ class Interface:
                 )
                 self.taken[k] = pushed @ frame
             left = self._energy(before - self._moved())
-            self.unsettled = 0.0 if left <= nothing else float(np.sqrt(left / self.body.mass))
-            if left <= nothing:
-                break
+        return 0.0 if left <= nothing else float(np.sqrt(left / self.body.mass))
 
     def _met(self, apart: Array, yields: Array) -> tuple[Array, int, float]:
         """Impulse, meeting and slip of a node, along and across the normal: from its velocity

@@ -111,6 +111,13 @@ def sliding(friction: float) -> dict[str, Any]:
     return {"materials": [SOIL, RIGID | angles, STONE, HEAVY | angles]}
 
 
+def light(friction: float) -> dict[str, Any]:
+    """Both weigh a twentieth, so that what their soil takes is found node by node now and then."""
+    rigid = np.isin(BASE["material"], RIGID_ONES)
+    mass = np.where(rigid, BASE["mass"] / 20, BASE["mass"])
+    return sliding(friction) | {"mass": mass}
+
+
 def pebbles() -> dict[str, Any]:
     """Two more stones: of two points, and of a single one, which has no spin."""
     stone, material = BASE["stone"].copy(), BASE["material"].copy()
@@ -189,6 +196,7 @@ OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
         sliding(25.0) | {"materials": [SOIL, SLIDING, STONE, HEAVY]},
         "sliding",
     ),
+    "sliding_light": (light(60.0), "sliding"),
     "sliding_heap": (heap() | {"materials": [SOIL, SLIDING]}, "heap"),
     "heap_with_friction": (heap() | {"materials": [SOIL, ROUGH]}, "heap"),
 }

@@ -11,7 +11,7 @@ namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
 constexpr double kRounding = 1e-12;  // of the motion, for which no other one is looked for
-constexpr int kMostSettlings = 30, kMostTurns = 100;
+constexpr int kMostSettlings = 30, kFewestRounds = 5, kMostRounds = 80;
 
 /// Solves a x = b for three unknowns, by Cramer's rule.
 inline void solve3(const double (&a)[3][3], const double (&b)[3], double (&x)[3]) {
@@ -205,27 +205,31 @@ inline Pair impulse_alone(const Interface& between, BodyNode& node) {
   return -out / nn * normal;
 }
 
-/// The impulses of one node after the other, again and again (as Catto 2005 has it for bodies that
-/// touch), none of which adds energy; what is left of that is the change by the last round, m/s.
-inline void settle_in_turn(Interface& between) {
+/// The impulses of one node after the other, a number of times (as Catto 2005 has it for bodies
+/// that touch), none of which adds energy. What is left is the change by the last round, m/s.
+inline void settle_in_turn(Interface& between, int rounds) {
   HeldBody& held = between.held;
   between.reset();
   const double nothing = kRounding * kRounding * between.whole();
-  for (int round = 0; round < kMostTurns; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     const double before[3] = {held.velocity[0], held.velocity[1], held.spin};
     for (int k = 0; k < between.count; ++k)
       between.give(between.nodes[k], impulse_alone(between, between.nodes[k]));
     const double left = between.unsettled(before);
     held.unsettled = left <= nothing ? 0.0 : std::sqrt(left / between.mass);
-    if (left <= nothing) return;
   }
 }
 
-/// The impulses between a body and the soil at its nodes, and its velocity with them.
+/// The impulses between a body and the soil at its nodes, and its velocity with them: at once, from
+/// as near as it takes.
 inline void settle_nodes(const BodiesView& all, int body) {
   Interface between(all, body);
-  all.held[body].unsettled = 0.0;
-  if (!settle_at_once(between)) settle_in_turn(between);
+  HeldBody& held = all.held[body];
+  for (int rounds = kFewestRounds; !settle_at_once(between); rounds *= 2) {
+    settle_in_turn(between, rounds);
+    if (held.unsettled == 0.0 || rounds >= kMostRounds) return;
+  }
+  held.unsettled = 0.0;
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
