@@ -24,12 +24,12 @@ EXPLANATION = (
     "sign. What the last three grids do follows: *converges* with an order between 0.5 and 2.1, "
     "and then the limit by Richardson's extrapolation with its uncertainty (1.25 times the "
     "extrapolated difference, or with a fourth grid twice what the limit moved by the last one, if "
-    "that is less, but a third of it at least); *order not settled* outside of that (three times the spread); "
-    "*oscillates*; or *diverges*, the last change being the larger one; *too few grids* where not "
-    "all of the three finest have a value. *Errors* are parts of the limit on each grid: of the "
-    "model's own, or of the surest of those that agree with it; where a model has none, of the "
-    "surest of the other models. *Not reached*: the kinetic energy still grows in the end, or the "
-    "slope has not come to rest. Shares are parts of the drop in potential energy.\n"
+    "that is less, but a third of it at least); *order not settled* outside of that (three times "
+    "the spread); *oscillates*; or *diverges*, the last change being the larger one; *too few "
+    "grids* where not all of the three finest have a value. *Errors* are parts of the limit on "
+    "each grid: of the model's own, or of the surest of those that agree with it; where a model "
+    "has none, of the surest of the other models. *Not reached*: the kinetic energy still grows in "
+    "the end, or the slope has not come to rest. Shares are parts of the drop in potential energy.\n"
 )
 _OF_STONES = (
     "Means over draws of the stones, ±: one standard deviation between draws. Each draw has the "
