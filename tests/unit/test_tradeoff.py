@@ -209,7 +209,11 @@ def test_words() -> None:
 @pytest.mark.skipif(not NOTEBOOKS.exists(), reason="no source tree")
 def test_slope_a_is_held_against_the_limits_that_converge_found() -> None:
     text = (NOTEBOOKS / "convergence" / "convergence.md").read_text().split("## Slope A")[1]
-    names = ("peak kinetic energy, kJ/m", "time of peak kinetic energy, s", "largest vertical displacement, m")
+    names = (
+        "peak kinetic energy, kJ/m",
+        "time of peak kinetic energy, s",
+        "largest vertical displacement, m",
+    )
     found = [re.search(rf"{name} \|.*\| ([\d.]+) ± ([\d.]+) \|", text) for name in names]
     limits, uncertainties = zip(*(map(float, one.groups()) for one in found if one), strict=True)
     for known, told in (

@@ -29,7 +29,8 @@ EXPLANATION = (
     "grids* where not all of the three finest have a value. *Errors* are parts of the limit on "
     "each grid: of the model's own, or of the surest of those that agree with it; where a model "
     "has none, of the surest of the other models. *Not reached*: the kinetic energy still grows in "
-    "the end, or the slope has not come to rest. Shares are parts of the drop in potential energy.\n"
+    "the end, or the slope has not come to rest. Shares are parts of the drop in potential "
+    "energy.\n"
 )
 _OF_STONES = (
     "Means over draws of the stones, ±: one standard deviation between draws. Each draw has the "
