@@ -201,7 +201,8 @@ class Solver:
         self._core.stop()
 
     def set_materials(self, materials: Sequence[Material]) -> None:
-        """Replace the materials, one for each of before; the stresses stay as they are."""
+        """Replace the materials, one for each of before; the stresses stay as they are, and so do
+        volume strains that the method left to the materials of the start."""
         self._core.set_materials(_to_core(materials))
 
     def release_stress(self) -> float:

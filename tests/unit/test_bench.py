@@ -125,6 +125,7 @@ def test_plan_has_the_variants_in_the_size_nearest_to_slope_a() -> None:
     assert {case.shape for case in large} == {"linear", "ugimp", "cpgimp"}
     assert any(case.ledger for case in large) and any(case.stones == 0.4 for case in large)
     assert any(case.precision == "single" for case in large)
+    assert any(case.volumetric_strain == "cell_average" for case in large)
 
 
 def test_plan_refuses() -> None:

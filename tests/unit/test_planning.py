@@ -91,7 +91,7 @@ def test_blend_is_held_with_every_shape(shape: str) -> None:
 def test_transfers_without_a_blend_are_planned(small: gs.Scene, transfer: Any) -> None:
     method = gs.Method(transfer=transfer, courant=0.3)
     posed = pose(small, 0.5, method, gs.Stages(), until_rest=False)
-    assert posed.on(2).method == method
+    assert posed.on(2).method == method.of(small.materials)
 
 
 @pytest.mark.parametrize(

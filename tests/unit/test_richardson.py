@@ -35,20 +35,25 @@ def test_two_powers_lie_within_the_uncertainty() -> None:
     assert abs(found.limit - 7.0) < found.uncertainty
 
 
-@pytest.mark.parametrize(("noise", "share"), [(0.0, 0.95), (0.002, 0.95)])
-@pytest.mark.parametrize("grids", [3, 4])
-def test_limits_lie_within_their_uncertainties(noise: float, share: float, grids: int) -> None:
-    """Of sums of two powers whose first is within the trusted orders, in 19 of 20 cases."""
+@pytest.mark.parametrize("noise", [0.0, 0.002])
+def test_limits_lie_within_what_a_fourth_grid_leaves(noise: float) -> None:
+    """Of sums of two powers, the first of a trusted order, with noise as a share of what the
+    coarsest grid is off by: 19 of 20 of the uncertainties that the fourth grid narrows hold."""
     rng = np.random.default_rng(1)
     hold = []
-    for _ in range(4000):
+    for _ in range(6000):
         order = rng.uniform(0.6, 2.0)
-        first, second = 1.0, rng.uniform(-1.5, 1.5)
-        values = first * CELLS**order + second * CELLS ** (order + rng.uniform(0.3, 1.5))
-        found = extrapolate((values * (1 + noise * rng.normal(size=4)))[4 - grids :])
-        if found.behaviour == "converges":
-            hold.append(abs(found.limit) <= found.uncertainty)
-    assert len(hold) > 1000 and np.mean(hold) >= share
+        higher = order + rng.uniform(0.3, 1.5)
+        cells = CELLS / CELLS[0]
+        values = 7.0 + cells**order + rng.uniform(-1.5, 1.5) * cells**higher
+        values += noise * rng.normal(size=4)
+        found = extrapolate(values)
+        if (
+            found.behaviour == "converges"
+            and found.uncertainty < extrapolate(values[1:]).uncertainty
+        ):
+            hold.append(abs(found.limit - 7.0) <= found.uncertainty)
+    assert len(hold) > 1000 and np.mean(hold) >= 0.95
 
 
 def test_a_fourth_grid_whose_limit_differs_counts() -> None:

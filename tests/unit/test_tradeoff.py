@@ -15,6 +15,7 @@ from typing import Any, get_args
 
 import pytest
 
+import gimpslope as gs
 from gimpslope import cli, kernel
 from gimpslope.method import DomainUpdate, Precision, Scheme
 from gimpslope.studies import tradeoff
@@ -51,6 +52,13 @@ def test_each_case_is_planned_once_and_each_grid_has_the_default() -> None:
         defaults = [case.cell for case in found if case.is_default]
         assert set(defaults) >= {*problem.cells, *problem.fine}
         assert defaults == sorted(defaults, reverse=True)
+
+
+@pytest.mark.parametrize("problem", problems.PROBLEMS.values(), ids=problems.PROBLEMS)
+def test_methods_are_those_that_materials_get_by_themselves(problem: problems.Problem) -> None:
+    soil = gs.DruckerPrager(density=1800, young=30e6, poisson=0.33, friction=22, cohesion=1e3)
+    left = replace(problem.method, volumetric_strain=None)
+    assert problem.method == left.of([soil if problem.yields else soil.elastic()])
 
 
 def test_parameters_that_exclude_each_other_are_left_out() -> None:
@@ -215,6 +223,7 @@ def test_slope_a_is_held_against_the_limits_that_converge_found() -> None:
         "largest vertical displacement, m",
     )
     found = [re.search(rf"{name} \|.*\| ([\d.]+) ± ([\d.]+) \|", text) for name in names]
+    assert all(found)
     limits, uncertainties = zip(*(map(float, one.groups()) for one in found if one), strict=True)
     for known, told in (
         (problems.SLOPE_A, limits),

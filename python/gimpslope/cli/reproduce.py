@@ -83,7 +83,8 @@ def add(commands: Commands) -> None:
         type=float,
         metavar="E",
         help="in place of all that, plan each slope for its figures to that error, a share, and "
-        f"run it so, of one reading (default: {next(iter(reference.READINGS))}) and seed",
+        f"run it so, of one reading (default: {next(iter(reference.READINGS))}) and seed, with "
+        "volume strains averaged over cells",
     )
     parser.add_argument(
         "--budget",

@@ -1,10 +1,11 @@
 """What grids tell of one quantity: its value without grid, the error of that, and what a finer grid
 would leave of it.
 
-Where three grids converge, limit and uncertainty are those of Richardson's extrapolation. Elsewhere
-the finest value stands for itself, and its uncertainty is three times (Eca and Hoekstra, J. Comput.
-Phys. 262 (2014) 104) the last change, or a quarter of the change before if that is more: second
-order would have left that much, and a smaller change is chance.
+Where the last three grids converge, limit and uncertainty are those of Richardson's extrapolation,
+which a fourth may narrow. Elsewhere the finest value stands for itself, and its uncertainty is
+three times (Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104) the last change, or a quarter of the
+change before if that is more: second order would have left that much, and a smaller change is
+chance.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Estimate:
 
     @property
     def value(self) -> float:
-        """Best value, SI units: the limit where three grids converge, else that of the finest."""
+        """Best value, SI units: the limit where the last three grids converge, else the finest."""
         return self._limit.limit if self._limit else self.raw[-1]
 
     @property

@@ -47,6 +47,7 @@ def pose(
 ) -> Problem:
     """The problem of a scene: blend held as a viscosity, stones rigid where they may be, the slide
     no longer than is needed for what is wanted to an `error`."""
+    method = method.of(scene.materials)  # of those that are asked for, not of rigid ones
     held = blend.held(scene, method)
     reasons = []
     if held != method:

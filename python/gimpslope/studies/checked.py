@@ -116,7 +116,8 @@ class Catalogue(Generic[C, R]):
         Parameters
         ----------
         names : of the cases (default: all)
-        full : with the finest grids and at all places, in minutes; otherwise quickly, in seconds
+        full : with the finest grids and at all places, in minutes, or quickly, in seconds; None: as
+            `full` of the catalogue
 
         Raises
         ------

@@ -3,8 +3,9 @@
 Sources: Roache, J. Fluids Eng. 116 (1994) 405, for the estimate and the safety factor of 1.25; Eca
 and Hoekstra, J. Comput. Phys. 262 (2014) 104, for the range of orders in which it is trusted, and
 three times the spread elsewhere. Where four grids give two limits, their difference tells how far
-limits still move: twice that, but no less than a third of the first estimate, for it may be small
-by chance (for sums of two powers that holds in 19 of 20 cases, as the tests show).
+limits still move, and the estimate may be less: twice that, but no less than a third of the first
+estimate, for it may be small by chance. That has no source but its test: for sums of two powers
+with noise it holds in 19 of 20 cases.
 """
 
 from __future__ import annotations
@@ -39,8 +40,8 @@ class Extrapolation:
     orders : observed order of each three grids in a row, coarsest first; NaN where their two
         changes differ in sign
     limit : estimated value at zero cell size; NaN unless the last three approach one
-    uncertainty : of the limit, or of the finest value where there is none; 95 % by the sources.
-        That of a limit takes in a fourth grid where there is one
+    uncertainty : of the limit, or of the finest value where there is none; 95 %, by the sources
+        for three grids; a fourth may narrow that of a limit
     behaviour : "converges": the last three approach a limit with an order in [0.5, 2.1], or agree;
         "order not settled": they approach one with another order; "oscillates": their changes
         differ in sign; "diverges": the last change is the larger one

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from ... import _check, _core
 from ..._check import FloatArray
 from ...materials import DruckerPrager, Material
-from ...method import Method, Precision, Scheme, Shape
+from ...method import Method, Precision, Scheme, Shape, VolumetricStrain
 from ...scene import Points, Scene
 from ...solver import Solver
 from .. import reference
@@ -45,7 +45,7 @@ class Case:
     ----------
     points : about that many, >= 10
     threads : number of threads, >= 1
-    precision, shape, scheme, ledger : as of `Method`
+    precision, shape, scheme, volumetric_strain, ledger : as of `Method`
     stones : share of the area that is stone, in discs a metre apart, in [0, 0.7]
     instruction_set : one of `gimpslope.kernel.instruction_sets()`; the fastest where left out
 
@@ -60,6 +60,7 @@ class Case:
     precision: Precision = "double"
     shape: Shape = "ugimp"
     scheme: Scheme = "usf"
+    volumetric_strain: VolumetricStrain = reference.VOLUMETRIC_STRAIN
     ledger: bool = False
     stones: float = 0.0
     instruction_set: str = ""
@@ -77,7 +78,10 @@ class Case:
     def method(self) -> Method:
         """That of the reference study, with what this case changes."""
         method = reference.method(
-            threads=self.threads, precision=self.precision, ledger=self.ledger
+            threads=self.threads,
+            precision=self.precision,
+            volumetric_strain=self.volumetric_strain,
+            ledger=self.ledger,
         )
         return replace(method, shape=self.shape, scheme=self.scheme)
 

@@ -3,8 +3,9 @@
 One operation is the addition, subtraction, multiplication or division of two numbers, the larger or
 smaller of two, or a square root. Signs, absolute values, conversions and whole numbers are none,
 and what depends on the step alone is computed once. Not counted is what moves no point: the ledger,
-the search for the largest speed, checks, and sums that only fill up a vector. The scheme is USF in
-two sweeps, the second of which computes the shape functions anew; the law is Drucker-Prager.
+the search for the largest speed, checks, sums that only fill up a vector, and what averaged strains
+compute once more. The scheme is USF in two sweeps, the second of which computes the shape functions
+anew; the law is Drucker-Prager.
 """
 
 from __future__ import annotations

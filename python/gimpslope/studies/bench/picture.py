@@ -86,6 +86,7 @@ def _name(m: Measurement) -> str:
     changed = [
         case.shape if case.shape != case.standard.shape else "",
         "single precision" if case.precision == "single" else "",
+        "averaged strains" if case.volumetric_strain == "cell_average" else "",
         "ledger" if case.ledger else "",
         f"{100 * case.stones:.0f} % stones" if case.stones else "",
     ]
