@@ -88,7 +88,7 @@ class Recorder:
             self._finish("finished", self.detail)
         elif issubclass(kind, KeyboardInterrupt):
             where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
-            self._finish("interrupted", f"stopped by the user {where}")
+            self._finish("interrupted", f"stopped by Ctrl-C or SIGTERM {where}")
         else:
             self._finish("failed", f"{kind.__name__}: {error}", sound=kind is not Diverged)
 
