@@ -19,12 +19,13 @@ def terminable() -> Iterator[None]:
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Hold both back until the block has ended, by an error too, then let them act as before."""
+def uninterrupted() -> Iterator[list[int]]:
+    """Hold both back until the block has ended, by an error too, then let them act as before; those
+    that came so far."""
     came: list[int] = []
     try:
         with caught() as came:
-            yield
+            yield came
     finally:
         for number in came:
             signal.raise_signal(number)

@@ -7,8 +7,8 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
@@ -68,6 +68,18 @@ def run_all(
     return [worker.outcome for worker in begun]
 
 
+@contextmanager
+def signals_blocked() -> Iterator[None]:
+    """Ctrl-C and SIGTERM wait, also in the processes that are started in the block, there until
+    they are unblocked."""
+    resource_tracker.ensure_running()  # to start it on the way would unblock them
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, BOTH)
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 class _Worker(Generic[Given]):
     """A process in which signals wait until it can answer them."""
 
@@ -76,12 +88,8 @@ class _Worker(Generic[Given]):
         self.outcome = Outcome[Given]((), ChildProcessError("a process was killed at its work"))
         self.answer, answer = spawn.Pipe(duplex=False)
         self.process: BaseProcess = spawn.Process(target=_run, args=(work, answer))
-        resource_tracker.ensure_running()  # to start it on the way would unblock the signals
-        before = signal.pthread_sigmask(signal.SIG_BLOCK, BOTH)
-        try:
+        with signals_blocked():
             self.process.start()
-        finally:
-            signal.pthread_sigmask(signal.SIG_SETMASK, before)
         answer.close()
 
     def ended(self) -> bool:
