@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
 
-_BOTH = (signal.SIGINT, signal.SIGTERM)
+BOTH = (signal.SIGINT, signal.SIGTERM)
 
 
 @contextmanager
@@ -19,12 +19,16 @@ def terminable() -> Iterator[None]:
 
 
 @contextmanager
-def uninterrupted() -> Iterator[None]:
-    """Hold both back until the block has ended, then let them act as before."""
-    with caught() as came:
-        yield
-    for number in came:
-        signal.raise_signal(number)
+def uninterrupted() -> Iterator[list[int]]:
+    """Hold both back until the block has ended, by an error too, then let them act as before; those
+    that came so far."""
+    came: list[int] = []
+    try:
+        with caught() as came:
+            yield came
+    finally:
+        for number in came:
+            signal.raise_signal(number)
 
 
 @contextmanager
@@ -32,7 +36,7 @@ def caught() -> Iterator[list[int]]:
     """Those that came since the block began, to be looked at in good time: as an exception one is
     lost where Python ignores those, as in a callback of HDF5."""
     came: list[int] = []
-    with _answered(_BOTH, lambda number, _: came.append(number)):
+    with _answered(BOTH, lambda number, _: came.append(number)):
         yield came
 
 

@@ -43,6 +43,7 @@ class Recorder:
         progress: bool = True,
     ) -> None:
         setup = simulation.setup
+        method = setup.method.of(setup.scene.materials)
         self.path = Path(_check.instance("output", output, str | PathLike, "a path"))
         self.detail = ""
         self._solver = simulation.solver
@@ -64,6 +65,7 @@ class Recorder:
             version=version("gimpslope"),
             instruction_set=self._solver.instruction_set,
             threads=self._solver.threads,
+            volumetric_strain=method.to_core()["volumetric_strain"],
             ledger=setup.method.ledger,
             rigid_stones=self._solver.rigid_stones.number.tolist(),
             overwrite=_check.flag("overwrite", overwrite),
@@ -86,7 +88,7 @@ class Recorder:
             self._finish("finished", self.detail)
         elif issubclass(kind, KeyboardInterrupt):
             where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
-            self._finish("interrupted", f"stopped by the user {where}")
+            self._finish("interrupted", f"stopped by Ctrl-C or SIGTERM {where}")
         else:
             self._finish("failed", f"{kind.__name__}: {error}", sound=kind is not Diverged)
 

@@ -93,6 +93,7 @@ def new_writer(path: Path, *, overwrite: bool = False) -> RunWriter:
         version="0.0.0",
         instruction_set="none",
         threads=1,
+        volumetric_strain="cell_average",
         overwrite=overwrite,
     )
 

@@ -104,6 +104,7 @@ def test_parameters_larger_than_an_hdf5_attribute_header(tmp_path: Path) -> None
         version="0",
         instruction_set="none",
         threads=1,
+        volumetric_strain="point",
     )
     assert hdf5.read_attributes(tmp_path / "a.h5")["scene"] == json.loads(text)
 

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 import os
+import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -79,6 +81,34 @@ def test_a_plan_that_is_terminated_takes_its_pilots_along(tmp_path: Path) -> Non
             time.sleep(0.05)
         assert list(pilots.glob("gimpslope_*/*.h5")), "no pilot has begun"
         process.terminate()
+        _, errors = process.communicate(timeout=10)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 130
+    assert errors.decode().endswith("gimpslope: interrupted\n") and b"Traceback" not in errors
+    assert list(pilots.iterdir()) == []
+
+
+@pytest.mark.parametrize("kill", [os.kill, os.killpg], ids=["alone", "as_a_group"])
+def test_a_study_that_is_terminated_takes_its_plans_along(
+    tmp_path: Path, kill: Callable[[int, int], None]
+) -> None:
+    pilots = tmp_path / "pilots"
+    pilots.mkdir()
+    words = ["--error", "0.001", "--jobs", "2", "--output", str(tmp_path / "study")]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "gimpslope.cli", "reproduce", *words],
+        env=os.environ | {"TMPDIR": str(pilots)},
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    try:
+        deadline = time.monotonic() + 25
+        while len(list(pilots.glob("gimpslope_*/*.h5"))) < 2 and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert len(list(pilots.glob("gimpslope_*"))) == 2, "two plans have begun"
+        kill(process.pid, signal.SIGTERM)
         _, errors = process.communicate(timeout=10)
     finally:
         process.kill()

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -16,9 +17,9 @@ import numpy as np
 import pytest
 
 import gimpslope as gs
-from gimpslope import cli, interrupts
+from gimpslope import cli
 from gimpslope.io import atomic, hdf5
-from gimpslope.studies import parallel, planned, reference, reproduce
+from gimpslope.studies import parallel, planned, processes, reference, reproduce
 
 SMALL = [
     *("reproduce", "--cell", "0.2", "--stone-modulus", "3e7", "--duration", "0.6"),
@@ -104,10 +105,19 @@ def test_refusals(words: str, message: str, capsys: pytest.CaptureFixture[str]) 
     assert not Path("never").exists()
 
 
-def test_ctrl_c_ends_all_runs_and_keeps_them(tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("kill", "number"),
+    [(os.kill, signal.SIGINT), (os.killpg, signal.SIGTERM)],
+    ids=["ctrl_c", "terminated_as_a_group"],
+)
+def test_signals_end_all_runs_and_keep_them(
+    tmp_path: Path, kill: Callable[[int, int], None], number: signal.Signals
+) -> None:
     words = ["--cell", "0.2", "--reading", "identified", "--quiet", "--output", "stopped"]
     command = [sys.executable, "-m", "gimpslope.cli", "reproduce", *words, "--jobs", "2"]
-    process = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.PIPE)
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, start_new_session=True
+    )
     first, second = (
         tmp_path / "stopped" / f"identified_{name}_1.h5" for name in ("arbitrary", "round")
     )
@@ -115,26 +125,11 @@ def test_ctrl_c_ends_all_runs_and_keeps_them(tmp_path: Path) -> None:
     while not (first.exists() and second.exists()) and time.monotonic() < deadline:
         time.sleep(0.1)
     time.sleep(1.0)
-    os.kill(process.pid, signal.SIGINT)
+    kill(process.pid, number)
     _, errors = process.communicate(timeout=30)
     assert process.returncode == 130
     assert errors.decode() == "gimpslope: interrupted\n"
     assert [gs.open(path).status for path in (first, second)] == ["interrupted", "interrupted"]
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_signals_are_not_lost_where_python_ignores_exceptions(number: signal.Signals) -> None:
-    """In a finaliser it would be an exception that nobody sees."""
-
-    class Callback:
-        def __del__(self) -> None:
-            os.kill(os.getpid(), number)
-
-    before = signal.getsignal(number)
-    with interrupts.caught() as came:
-        Callback()
-        assert came == [number]
-    assert signal.getsignal(number) is before
 
 
 def test_runs_end_with_a_study_that_is_killed_and_nothing_is_written_twice(
@@ -163,16 +158,16 @@ def test_no_more_than_so_many_runs_at_a_time(
 ) -> None:
     """All are made, and given back in the order of the plan."""
     going: list[int] = []
-    start = parallel._start
+    start = processes._Worker
 
-    def counted(one: planned.Planned) -> Any:
-        alive = [process for process in started if process.is_alive()]
+    def counted(work: Any) -> Any:
+        alive = [worker for worker in started if worker.process.is_alive()]
         going.append(len(alive) + 1)
-        started.append(start(one))
+        started.append(start(work))
         return started[-1]
 
     started: list[Any] = []
-    monkeypatch.setattr(parallel, "_start", counted)
+    monkeypatch.setattr(processes, "_Worker", counted)
     setup = reference.setup(cell=0.8, duration=0.05)
     plans = [planned.plan(tmp_path / f"{number}.h5", setup) for number in range(4)]
     runs = parallel.run_all(plans, jobs=2, progress=False)

@@ -332,6 +332,26 @@ def test_file_is_complete_for_plain_h5py(finished: gs.Run) -> None:
         assert set(np.unique(file["energy/stage"])) == {0, 1, 2}
 
 
+@pytest.mark.parametrize(
+    ("scene", "given", "used"),
+    [
+        (SLOPE, None, "cell_average"),
+        (SLOPE, "point", "point"),
+        (block(), None, "point"),
+        (block(), "cell_average", "cell_average"),
+    ],
+    ids=["soil", "soil_as_told", "elastic", "elastic_as_told"],
+)
+def test_file_tells_which_volume_strains_were_used(
+    scene: gs.Scene, given: Any, used: str, tmp_path: Path
+) -> None:
+    """Also where the method leaves them to the materials, as the setup goes on to do."""
+    method = gs.Method(volumetric_strain=given)
+    run = simulate(tmp_path / "run.h5", scene=scene, method=method, duration=0.01)
+    assert run.attributes["volumetric_strain"] == used
+    assert run.method == method
+
+
 def test_opened_while_h5py_reads_it(finished: gs.Run) -> None:
     with h5py.File(finished.path, "r"):
         assert gs.open(finished.path).status == "finished"

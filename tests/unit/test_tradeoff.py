@@ -7,6 +7,7 @@ import csv
 import json
 import math
 import re
+import signal
 from collections.abc import Sequence
 from dataclasses import replace
 from itertools import chain
@@ -16,7 +17,7 @@ from typing import Any, get_args
 import pytest
 
 import gimpslope as gs
-from gimpslope import cli, kernel
+from gimpslope import cli, interrupts, kernel
 from gimpslope.method import DomainUpdate, Precision, Scheme
 from gimpslope.studies import tradeoff
 from gimpslope.studies.tradeoff import pareto, problems, rows, summary, words
@@ -127,6 +128,13 @@ def test_two_jobs_make_the_same_errors_as_one(tmp_path: Path) -> None:
         list(sweep(replace(FEW, rounds=1), tmp_path / name, jobs=jobs))
     found = [[one.error for one in measured(FEW, tmp_path / name)] for name in ("one", "two")]
     assert found[0] == found[1]
+
+
+def test_a_sweep_that_is_stopped_keeps_the_runs_that_are_going(tmp_path: Path) -> None:
+    with pytest.raises(KeyboardInterrupt), interrupts.terminable():
+        for _ in sweep(FEW, tmp_path, jobs=2):
+            signal.raise_signal(signal.SIGTERM)
+    assert missing(FEW, tmp_path) == 6 - 2
 
 
 def test_a_run_that_fails_is_told_and_not_repeated(tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from .. import _check
+from ..interrupts import uninterrupted
 from ..method import Method
 from ..run import Run
 from ..scene import Scene
@@ -183,7 +184,8 @@ def plan(
     try:
         found = search(problem, target, directory, progress=progress)
     except BaseException:
-        shutil.rmtree(directory)
+        with uninterrupted():
+            shutil.rmtree(directory)
         raise
     needed, levels = found.levels, _affordable(found)
     finest = found.pilots[-1]

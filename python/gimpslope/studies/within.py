@@ -3,10 +3,8 @@ what is known of it where that cannot be had."""
 
 from __future__ import annotations
 
-import multiprocessing
 import time as clock
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.metadata import version
@@ -15,7 +13,7 @@ from pathlib import Path
 
 from .. import planning
 from ..planning import Estimate, Target
-from . import plain_data, reference
+from . import plain_data, processes, reference
 
 QUANTITIES = (
     "peak_kinetic_energy",
@@ -74,7 +72,7 @@ def study(
     jobs: int = 1,
     overwrite: bool = False,
 ) -> Study:
-    """Plan and run the slopes, at most `jobs` at a time.
+    """Plan and run the slopes, at most `jobs` at a time; Ctrl-C or SIGTERM ends all.
 
     Parameters
     ----------
@@ -109,10 +107,9 @@ def study(
     )
     # Those with stones take longest; soil fills the gap that they leave.
     names = sorted(reference.SLOPES, key="soil".__eq__)
-    spawn = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(max_workers=jobs, mp_context=spawn) as pool:
-        made = {slope.name: slope for slope in pool.map(make, names)}
-    slopes = tuple(made[name] for name in reference.SLOPES)
+    outcomes = processes.run_all([partial(make, name) for name in names], jobs=jobs)
+    made = dict(zip(names, outcomes, strict=True))
+    slopes = tuple(made[name].value() for name in reference.SLOPES)
     return Study(target, reading, seed, slopes, clock.perf_counter() - start)
 
 

@@ -3,7 +3,9 @@
 Root attributes
     format = "gimpslope run", format_version, gimpslope_version, created (ISO 8601, UTC), status
     ("running", "finished", "interrupted" or "failed"), status_detail, instruction_set, threads,
-    process (machine and number of the one that writes);
+    volumetric_strain ("point" or "cell_average": which of them was used, also where the method
+    leaves it to the materials; not in files of older versions), process (machine and number of the
+    one that writes);
     JSON text: scene, method, stages, recording, and at the end of the run summary and timing
     (wall_seconds spent stepping, point_steps).
 /points

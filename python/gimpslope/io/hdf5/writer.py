@@ -51,6 +51,7 @@ class RunWriter:
     setup : complete parameters, JSON text by the names in `SETUP`
     version : of gimpslope
     instruction_set, threads : what the solver runs on
+    volumetric_strain : what the method is with these materials, where it is left to them too
     ledger : whether the energy rows have the columns of `LEDGER` too
     rigid_stones : numbers of the rigid stones; with any, rows have the column `RIGID_STONES` too
     overwrite : whether a file that is not empty may be replaced
@@ -69,6 +70,7 @@ class RunWriter:
         version: str,
         instruction_set: str,
         threads: int,
+        volumetric_strain: str,
         ledger: bool = False,
         rigid_stones: Sequence[int] = (),
         overwrite: bool = False,
@@ -95,6 +97,7 @@ class RunWriter:
                 file.attrs[name] = setup[name]
             file.attrs["instruction_set"] = instruction_set
             file.attrs["threads"] = threads
+            file.attrs["volumetric_strain"] = volumetric_strain
             file.attrs["process"] = this_process()
             energy = file.create_group("energy")
             for name, quantity in self._columns.items():

@@ -5,18 +5,19 @@ from __future__ import annotations
 
 import math
 import multiprocessing
-import signal
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from ...interrupts import uninterrupted
 from ...simulation import NotSettledError
 from ...solver import Diverged
+from .. import processes
 from . import rows
 from .plan import Case, Plan
 from .problems import PROBLEMS
@@ -55,8 +56,9 @@ class Measured:
 def sweep(plan: Plan, folder: Path, *, jobs: int = 1) -> Iterator[Row]:
     """Make the runs that are not there yet, at most `jobs` at a time, and write each to the folder.
 
-    A run that fails is not repeated. A script that calls this with more than one job needs
-    `if __name__ == "__main__":`, for the processes import it.
+    A run that fails is not repeated. Ctrl-C or SIGTERM ends a sweep of one job at once, one of more
+    when the runs that are going have ended, which are kept. A script that calls this with more than
+    one job needs `if __name__ == "__main__":`, for the processes import it.
     """
     for number in range(1, plan.rounds + 1):
         for row in _run_all(_waiting(plan, folder, number), jobs):
@@ -93,11 +95,17 @@ def _run_all(tasks: Sequence[Task], jobs: int) -> Iterator[Row]:
     if jobs == 1 or len(tasks) < 2:
         yield from map(run, tasks)
         return
-    ignore_interrupts = (signal.SIGINT, signal.SIG_IGN)  # the runs that go end, and are kept
-    with ProcessPoolExecutor(
-        jobs, multiprocessing.get_context("spawn"), signal.signal, ignore_interrupts
-    ) as pool:
-        yield from pool.map(run, tasks)
+    # Ctrl-C waits for the runs that are going, on purpose: they may be minutes of work, and what is
+    # measured of them is all that they leave.
+    queue, going = list(tasks), set[Future[Row]]()
+    spawn = multiprocessing.get_context("spawn")
+    with uninterrupted() as came, ProcessPoolExecutor(jobs, spawn) as pool:
+        while going or (queue and not came):
+            while queue and len(going) < jobs and not came:
+                with processes.signals_blocked():
+                    going.add(pool.submit(run, queue.pop(0)))
+            done, going = wait(going, return_when=FIRST_COMPLETED)
+            yield from (one.result() for one in done)
 
 
 def run(task: Task) -> Row:
