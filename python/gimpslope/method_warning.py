@@ -132,12 +132,13 @@ def _fracture(scene: Scene, solver: Solver) -> Iterator[str]:
 
 def _unsettled(scene: Scene, solver: Solver) -> Iterator[str]:
     where = {"interfaces": "soil slides along rigid stones", "contacts": "rigid stones touch"}
+    cure = {"interfaces": "heavier stones", "contacts": "fewer stones on top of each other"}
     for name, found in solver.unsettled.items():
         if found.sum > UNSETTLED * scene.cell:
             yield (
                 f"in {found.steps:,} of {solver.steps:,} steps the impulses where {where[name]} "
                 f"did not settle: their last changes alone come to {found.sum / scene.cell:.2g} "
-                "cells; fewer stones on top of each other, and wider ones, settle sooner"
+                f"cells; {cure[name]} settle sooner"
             )
 
 

@@ -70,7 +70,8 @@ class Unsettled(NamedTuple):
     steps : their number; those whose last change moves nothing by a millionth of a cell do not
         count
     largest, sum : how far the last change of a speed moves a stone against what it touches, m, in
-        one of these steps at most and in all of them; stones in a row add theirs
+        one of these steps at most and in all of them; of the worst stone or contact of each step,
+        beyond which overlaps of a row of stones add up
     """
 
     steps: int

@@ -95,7 +95,6 @@ class Reference(Points):
         self.cell, self.walls, self.shape = cell, list(walls), shape
         self.domain_update, self.volume_update = domain_update, volume_update
         self.volumetric_strain = volumetric_strain
-        self.origin = np.asarray(origin)
         self.ledger = Ledger()
         self.scheme, self.blend, self.step_rule = scheme, blend, time_step
         self.transfer, self.order = transfer, order
@@ -167,7 +166,8 @@ class Reference(Points):
             raise RuntimeError("a point has left the grid; make margin larger")
         cells = None
         if self.volumetric_strain == "cell_average":
-            cells = strain.cell_numbers(self.position, self.origin, self.cell)
+            corner = np.array([line[0] for line in self.lines])
+            cells = strain.cell_numbers(self.position, corner, self.cell)
 
         mass = s.T @ self.soft_mass
         momentum = self._momentum(s)

@@ -95,15 +95,16 @@ class Interface:
         has taken so far; `unsettled` is what they leave, as a speed of the stone."""
         motion = np.append(self.whole.velocity, self.whole.spin)
         self.alone = motion + np.linalg.solve(self.inertia, self._sum(self.taken))
-        whole = self.alone @ self.inertia @ self.alone + self.mass @ (self.free**2).sum(axis=1)
-        nothing, rounds = ROUNDING**2 * whole, FEWEST_ROUNDS
-        while not self._settle_at_once(motion, nothing):
-            self.unsettled = self._settle_in_turn(rounds, nothing)
-            if self.unsettled == 0 or rounds >= MOST_ROUNDS:
-                break
-            motion, rounds = self._moved(), 2 * rounds
-        else:
-            self.unsettled = 0.0
+        soil_alone = float(self.mass @ (self.free**2).sum(axis=1))
+        nothing = ROUNDING**2 * (self._energy(self.alone) + soil_alone)
+        rounds, self.unsettled = FEWEST_ROUNDS, 0.0
+        settled = self._settle_at_once(motion, nothing)
+        while not settled and rounds <= MOST_ROUNDS:
+            settled = self._settle_in_turn(rounds, nothing) == 0
+            settled = settled or self._settle_at_once(self._moved(), nothing)
+            rounds *= 2
+        if not settled:
+            self.unsettled = self._settle_in_turn(MOST_ROUNDS, nothing)
         result = self._moved()
         self.whole.velocity, self.whole.spin = result[:2], float(result[2])
 
@@ -125,8 +126,9 @@ class Interface:
 
     def _settle_in_turn(self, rounds: int, nothing: float) -> float:
         """The impulse of one node after the other that meets the law if all others stay: inelastic
-        along the normal, and across it as much friction as is needed or can be had. The change by
-        the last round, as a speed of the stone."""
+        along the normal, and across it as much friction as is needed or can be had. From none, for
+        those of Newton's method may have added energy. The change by the last round, as a speed of
+        the stone."""
         self.taken = np.zeros_like(self.taken)
         flexible, across = np.linalg.inv(self.inertia), quarter_turn(self.normal)
         for _ in range(rounds):
@@ -148,21 +150,19 @@ class Interface:
 
     def _met(self, apart: Array, yields: Array) -> tuple[Array, int, float]:
         """Impulse, meeting and slip of a node, along and across the normal: from its velocity
-        without the impulse, and the matrix by which that changes with it."""
+        without the impulse, and the matrix by which that changes with it. Soil that runs in and
+        does not slip either way sticks."""
         rough = self.body.friction
         assert rough is not None
         if apart[0] >= 0:
             return np.zeros(2), APART, 0.0
-        sticking = -np.linalg.solve(yields, apart)
-        if sticking[0] >= 0 and abs(sticking[1]) <= rough * sticking[0]:
-            return sticking, STUCK, 0.0
         for slip in (1.0, -1.0):
             along = np.array([1.0, -slip * rough])
             pushing = yields[0] @ along
             impulse = -apart[0] / pushing * along
-            if pushing > 0 and slip * (apart + yields @ impulse)[1] >= 0:
+            if pushing > 0 and slip * (apart + yields @ impulse)[1] > 0:
                 return impulse, SLIPPING, slip
-        return np.array([-apart[0] / yields[0, 0], 0.0]), SLIPPING, 0.0
+        return -np.linalg.solve(yields, apart), STUCK, 0.0
 
     def _energy(self, motion: Array) -> float:
         """Twice the kinetic energy of the stone."""

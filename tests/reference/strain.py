@@ -16,9 +16,10 @@ Array = NDArray[np.float64]
 Cells = NDArray[np.int64]
 
 
-def cell_numbers(position: Array, origin: Array, cell: float) -> Cells:
-    """A number for the cell of each point."""
-    places = np.floor((position - origin) / cell)
+def cell_numbers(position: Array, corner: Array, cell: float) -> Cells:
+    """A number for the cell of each point, counted from the first node of a grid. Rounding alone
+    tells on which side of a cell line a point lies that is on it: as the kernel has it."""
+    places = np.trunc((position - corner) * (1 / cell))
     return np.unique(places, axis=0, return_inverse=True)[1].ravel()
 
 

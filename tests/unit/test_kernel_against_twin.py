@@ -315,6 +315,23 @@ def collapsing_column() -> dict[str, Any]:
     )
 
 
+def points_on_cell_lines() -> dict[str, Any]:
+    """Every other column and row, where rounding tells in which cell strains are averaged. With
+    this margin the twin has the first node of the kernel, from which both count."""
+    cell = 0.7
+    scene = block(12, 8, cell=cell, speed=0.4, prestress=3e3)
+    return (
+        BASE
+        | scene
+        | {
+            "position": scene["position"] + cell / 4,
+            "volumetric_strain": "cell_average",
+            "steps": 5,
+            "margin": 1,
+        }
+    )
+
+
 def expanding_dust(domain_update: str) -> Callable[[], dict[str, Any]]:
     """Domains that grow from half a cell to more than one, so that the wide basis takes over."""
 
@@ -366,6 +383,7 @@ SCENES = {
     "spinning_disk": spinning_disk,
     "long_flight": long_flight,
     "collapsing_column": collapsing_column,
+    "points_on_cell_lines": points_on_cell_lines,
     "expanding_dust_jacobian": expanding_dust("jacobian"),
     "expanding_dust_stretch": expanding_dust("stretch"),
     "expanding_dust_deformation_diagonal": expanding_dust("deformation_diagonal"),
@@ -403,6 +421,12 @@ def test_scenes_do_what_they_are_for() -> None:
     assert np.ptp(collapsing_column()["position"][:, 1]) > 6 * BASE["cell"]
     assert np.abs(column["position"] - collapsing_column()["position"]).max() > BASE["cell"]
     assert (column["plastic_strain"] > 0.05).any()
+
+    lines = points_on_cell_lines()
+    places = lines["position"] / lines["cell"]
+    assert (np.abs(places - np.round(places)) < 1e-12).mean() == 0.5
+    counted = np.trunc((lines["position"] + lines["cell"]) * (1 / lines["cell"])) - 1
+    assert (counted != np.floor(places)).any()
 
     for name in SCENES:
         if name.startswith("expanding_dust"):

@@ -491,3 +491,17 @@ def test_soil_meets_a_stone_by_the_law_of_coulomb(
         np.testing.assert_allclose(rubbed[slips], most[slips], atol=1e-9)
         energy = found.mass @ (found.velocity() ** 2).sum(axis=1) + motion @ found.inertia @ motion
         assert energy < found.mass @ (found.free**2).sum(axis=1) * (1 + 1e-12)
+
+
+def test_soil_on_the_verge_of_slipping_takes_all_its_friction() -> None:
+    """Rounding may find that it neither sticks nor slips; its impulse is the same either way."""
+    random, friction = np.random.default_rng(3), 0.7
+    stone = runs_into_an_ellipse(0, friction, 1.0)
+    for rubbing in np.where(random.random(1000) < 0.5, friction, -friction):
+        arm = random.standard_normal(2)
+        yields = random.uniform(1.0, 9.0) * np.eye(2) + np.outer(arm, arm)
+        impulse = np.array([1.0, rubbing])
+        apart = -yields @ impulse
+        if apart[0] < 0:
+            found, _, _ = stone._met(apart, yields)
+            np.testing.assert_allclose(found, impulse, rtol=1e-11)
