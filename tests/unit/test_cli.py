@@ -20,6 +20,7 @@ from gimpslope.cli import run as run_command
 from gimpslope.io import atomic
 from gimpslope.studies import reference, verify
 from gimpslope.studies.bench import guard
+from gimpslope.studies.bench.plan import Plan
 from gimpslope.studies.verify import bar
 
 COARSE = ["run", "soil", "--cell", "0.8", "--duration", "0.2", "--quiet"]
@@ -337,7 +338,7 @@ def test_bench(capsys: pytest.CaptureFixture[str]) -> None:
     shown = capsys.readouterr().out
     rows = json.loads(Path("bench.json").read_text())["speeds"]
     assert [row["threads"] for row in rows[:4]] == [1, 2, 1, 2]
-    assert len(rows) == 4 + 5
+    assert len(rows) == 4 + len(Plan().variants())
     for row in rows:
         assert 300 < row["points"] < 1700
         assert 0 < row["slowest"] <= row["median"] <= row["fastest"]
