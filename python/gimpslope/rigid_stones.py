@@ -30,6 +30,9 @@ class RigidStones:
     def __len__(self) -> int:
         return len(self.number)
 
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(m={len(self)})"
+
     @property
     def centre(self) -> FloatArray:
         """Of mass, m, shape (m, 2)."""
@@ -79,7 +82,7 @@ class Unsettled(NamedTuple):
     sum: float
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class RigidStoneRows(RigidStones):
     """The m rigid stones over the k rows of one stage of a run: arrays of `RigidStones` with an
     axis of time in front.

@@ -54,7 +54,8 @@ def add(commands: Commands) -> None:
         type=float,
         default=planning.Target.budget,
         metavar="S",
-        help="wall time that pilots and run may take, s (default: %(default)g)",
+        help="wall time that pilots and run may take, s; two pilots are run in any case "
+        "(default: %(default)g)",
     )
     parser.add_argument("--threads", type=int, metavar="N", help="(default: 1)")
     parser.add_argument(

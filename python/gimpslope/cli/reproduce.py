@@ -90,7 +90,8 @@ def add(commands: Commands) -> None:
         "--budget",
         type=float,
         metavar="S",
-        help=f"of --error, wall time in all, s (default: {_BUDGET:g})",
+        help="of --error, wall time in all, s, beyond which no more is begun than two pilots a "
+        f"slope (default: {_BUDGET:g})",
     )
     parser.add_argument(
         "--jobs", type=int, metavar="N", help="runs at a time (default: as many as processors)"

@@ -118,10 +118,13 @@ def _of_stones(found: Search, levels: int) -> tuple[str, ...]:
         if apart is None
         else f"three grids that tell them apart begin at {cell:.3g} m and end at {cell / 4:.3g} m"
     )
+    if close == 0:
+        return gaps, need
     return (
         gaps,
-        f"stones closer than two cells share nodes and act as one, which no order covers: "
-        f"{100 * close:.0f} % of them at {found.pilots[-1].cell:g} m; {need}",
+        "stones closer than two cells act as one, for the soil between them has no nodes of its "
+        f"own, which no order covers: {100 * close:.0f} % of them at {found.pilots[-1].cell:g} m; "
+        f"{need}",
     )
 
 

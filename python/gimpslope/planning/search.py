@@ -146,9 +146,12 @@ def search(
     more than half of what is left of the budget, and then as long as the grid that will do is not
     the next one and a pilot costs no more than a quarter of what is left."""
     found = _begin(problem, target, directory)
+    told = 0
     while True:
         if progress:
-            _tell(found.pilots[-1])
+            for pilot in found.pilots[told:]:
+                _tell(pilot)
+            told = len(found.pilots)
         few = len(found.pilots) < ORDER_NEEDS
         near = not few and found.levels in (0, 1)
         if near or found.seconds(1) > found.left * (_THIRD_SHARE if few else _PILOT_SHARE):

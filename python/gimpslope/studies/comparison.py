@@ -38,7 +38,7 @@ def text(title: str, summary: Mapping[str, float | int | None], paper: Mapping[s
         )
     gap = summary["smallest_gap_in_cells"]
     if gap is not None:
-        sharing = "; closer than two cells stones share nodes" if gap < NEAR_STONES else ""
+        sharing = "; closer than two cells deformable ones share nodes" if gap < NEAR_STONES else ""
         lines.append(f"The nearest two stones are {gap:.2f} cells apart{sharing}.")
     rate = summary["point_steps_per_second"]
     if rate is not None:
