@@ -246,7 +246,10 @@ def test_a_peak_that_may_be_to_come_is_none(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("gap", "told"),
     [
-        (1.031, "The nearest two stones are 1.03 cells apart; closer than two cells stones share"),
+        (
+            1.031,
+            "The nearest two stones are 1.03 cells apart; closer than two cells deformable ones",
+        ),
         (7.28, "The nearest two stones are 7.28 cells apart.\n"),
     ],
 )
