@@ -19,6 +19,7 @@ from gimpslope.planning import Estimate
 from gimpslope.studies import reference, within
 
 CELLS = (0.8, 0.4, 0.2)
+GIMPSLOPE = [sys.executable, "-m", "gimpslope.cli"]
 
 SCENE = """
 cell = 0.8
@@ -65,49 +66,23 @@ def test_command(
     assert "--output must be a new file" in capsys.readouterr().err
 
 
-def test_a_plan_that_is_terminated_takes_its_pilots_along(tmp_path: Path) -> None:
-    """Also one in the background of a script, where Ctrl-C is ignored."""
-    pilots = tmp_path / "pilots"
-    pilots.mkdir()
-    plan = ["plan", "soil", "--error", "0.001", "--output", str(tmp_path / "soil.h5")]
-    process = subprocess.Popen(
-        ["sh", "-c", "trap '' INT; exec \"$@\"", "", sys.executable, "-m", "gimpslope.cli", *plan],
-        env=os.environ | {"TMPDIR": str(pilots)},
-        stderr=subprocess.PIPE,
-    )
-    try:
-        deadline = time.monotonic() + 25
-        while not list(pilots.glob("gimpslope_*/*.h5")) and time.monotonic() < deadline:
-            time.sleep(0.05)
-        assert list(pilots.glob("gimpslope_*/*.h5")), "no pilot has begun"
-        process.terminate()
-        _, errors = process.communicate(timeout=10)
-    finally:
-        process.kill()
-        process.communicate()
-    assert process.returncode == 130
-    assert errors.decode().endswith("gimpslope: interrupted\n") and b"Traceback" not in errors
-    assert list(pilots.iterdir()) == []
-
-
-@pytest.mark.parametrize("kill", [os.kill, os.killpg], ids=["alone", "as_a_group"])
-def test_a_study_that_is_terminated_takes_its_plans_along(
-    tmp_path: Path, kill: Callable[[int, int], None]
+def terminated(
+    command: list[str], folder: Path, plans: int, kill: Callable[[int, int], None] = os.kill
 ) -> None:
-    pilots = tmp_path / "pilots"
+    """Ends a command by SIGTERM when so many plans have begun; none of their pilots is left."""
+    pilots = folder / "pilots"
     pilots.mkdir()
-    words = ["--error", "0.001", "--jobs", "2", "--output", str(tmp_path / "study")]
     process = subprocess.Popen(
-        [sys.executable, "-m", "gimpslope.cli", "reproduce", *words],
+        command,
         env=os.environ | {"TMPDIR": str(pilots)},
         stderr=subprocess.PIPE,
         start_new_session=True,
     )
     try:
         deadline = time.monotonic() + 25
-        while len(list(pilots.glob("gimpslope_*/*.h5"))) < 2 and time.monotonic() < deadline:
+        while len(list(pilots.glob("gimpslope_*/*.h5"))) < plans and time.monotonic() < deadline:
             time.sleep(0.05)
-        assert len(list(pilots.glob("gimpslope_*"))) == 2, "two plans have begun"
+        assert len(list(pilots.glob("gimpslope_*"))) == plans, "plans that have begun"
         kill(process.pid, signal.SIGTERM)
         _, errors = process.communicate(timeout=10)
     finally:
@@ -116,6 +91,21 @@ def test_a_study_that_is_terminated_takes_its_plans_along(
     assert process.returncode == 130
     assert errors.decode().endswith("gimpslope: interrupted\n") and b"Traceback" not in errors
     assert list(pilots.iterdir()) == []
+
+
+def test_a_plan_that_is_terminated_takes_its_pilots_along(tmp_path: Path) -> None:
+    """Also one in the background of a script, where Ctrl-C is ignored."""
+    plan = ["plan", "soil", "--error", "0.001", "--output", str(tmp_path / "soil.h5")]
+    in_background = ["sh", "-c", "trap '' INT; exec \"$@\"", ""]
+    terminated([*in_background, *GIMPSLOPE, *plan], tmp_path, plans=1)
+
+
+@pytest.mark.parametrize("kill", [os.kill, os.killpg], ids=["alone", "as_a_group"])
+def test_a_study_that_is_terminated_takes_its_plans_along(
+    tmp_path: Path, kill: Callable[[int, int], None]
+) -> None:
+    words = ["--error", "0.001", "--jobs", "2", "--output", str(tmp_path / "study")]
+    terminated([*GIMPSLOPE, "reproduce", *words], tmp_path, 2, kill)
 
 
 @pytest.mark.parametrize(

@@ -100,7 +100,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--overwrite", action="store_true", help="replace files of other runs in the directory"
     )
-    parser.add_argument("--quiet", action="store_true", help="no progress bar; --error has none")
+    parser.add_argument("--quiet", action="store_true", help="tell of no progress")
 
 
 def _prepare(options: argparse.Namespace) -> Callable[[], int]:
@@ -163,6 +163,7 @@ def _within(options: argparse.Namespace, jobs: int) -> Callable[[], int]:
             seed=options.seed[0],
             jobs=jobs,
             overwrite=options.overwrite,
+            progress=not options.quiet,
         )
         within.write(found, options.output)
         print(within.markdown(found))

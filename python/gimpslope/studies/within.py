@@ -3,6 +3,7 @@ what is known of it where that cannot be had."""
 
 from __future__ import annotations
 
+import sys
 import time as clock
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -71,6 +72,7 @@ def study(
     seed: int = 1,
     jobs: int = 1,
     overwrite: bool = False,
+    progress: bool = True,
 ) -> Study:
     """Plan and run the slopes, at most `jobs` at a time; Ctrl-C or SIGTERM ends all.
 
@@ -83,6 +85,7 @@ def study(
     jobs : processes, >= 1. A script that calls this needs `if __name__ == "__main__":`, for the
         processes import it
     overwrite : replace run files that are there
+    progress : tell of each slope on standard error
 
     Raises
     ------
@@ -104,6 +107,7 @@ def study(
         target=Target(target.error, target.quantities, share),
         reading=reading,
         seed=seed,
+        progress=progress,
     )
     # Those with stones take longest; soil fills the gap that they leave.
     names = sorted(reference.SLOPES, key="soil".__eq__)
@@ -113,7 +117,14 @@ def study(
     return Study(target, reading, seed, slopes, clock.perf_counter() - start)
 
 
-def _slope(name: str, *, folder: Path, target: Target, reading: str, seed: int) -> Slope:
+def _slope(
+    name: str, *, folder: Path, target: Target, reading: str, seed: int, progress: bool
+) -> Slope:
+    def tell(what: str) -> None:
+        if progress:
+            print(f"{reference.title(name)}: {what}", file=sys.stderr, flush=True)
+
+    tell("pilots")
     plan = planning.plan(
         reference.slope(name, reading, seed=seed),
         target.error,
@@ -122,6 +133,7 @@ def _slope(name: str, *, folder: Path, target: Target, reading: str, seed: int) 
         budget=target.budget,
         progress=False,
     )
+    tell(f"{plan.pilot_seconds:.0f} s of pilots; a run of about {plan.seconds:.0f} s")
     answer = plan.run(folder / f"{name}.h5", overwrite=True)
     return Slope(
         name,
