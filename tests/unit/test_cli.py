@@ -1,4 +1,4 @@
-"""The command line: what it runs, what it refuses, what it writes."""
+"""`gimpslope run`, `export` and `info`: what they run, what they refuse, what they write."""
 
 from __future__ import annotations
 
@@ -12,16 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 import synthetic_run
-from matplotlib.figure import Figure
 
 import gimpslope as gs
 from gimpslope import cli, figures
 from gimpslope.cli import run as run_command
 from gimpslope.io import atomic
-from gimpslope.studies import reference, verify
-from gimpslope.studies.bench import guard
-from gimpslope.studies.bench.plan import Plan
-from gimpslope.studies.verify import bar
+from gimpslope.studies import reference
 
 COARSE = ["run", "soil", "--cell", "0.8", "--duration", "0.2", "--quiet"]
 
@@ -322,122 +318,6 @@ def test_info(capsys: pytest.CaptureFixture[str]) -> None:
     assert gs.__version__ in shown
     for name in gs.kernel.instruction_sets():
         assert name in shown
-
-
-@pytest.fixture
-def short_bench(monkeypatch: pytest.MonkeyPatch) -> None:
-    parts = {"in_turn.SECONDS": 0.003, "machine.MEMORY": 2**20, "output.SHARE": 0.01}
-    for name, value in (parts | {"single.STEPS": 50}).items():
-        monkeypatch.setattr(f"gimpslope.studies.bench.{name}", value)
-
-
-@pytest.mark.usefixtures("short_bench")
-def test_bench(capsys: pytest.CaptureFixture[str]) -> None:
-    words = "bench --points 400 1500 --threads 1 2 --json bench.json --output speed"
-    assert cli.main(words.split()) == 0
-    shown = capsys.readouterr().out
-    rows = json.loads(Path("bench.json").read_text())["speeds"]
-    assert [row["threads"] for row in rows[:4]] == [1, 2, 1, 2]
-    assert len(rows) == 4 + len(Plan().variants())
-    for row in rows:
-        assert 300 < row["points"] < 1700
-        assert 0 < row["slowest"] <= row["median"] <= row["fastest"]
-        assert f"{row['median'] / 1e6:.1f}" in shown
-    assert Path("speed/bench.txt").read_text() in shown
-    assert Path("speed/bench.png").stat().st_size > 20_000
-
-
-@pytest.mark.parametrize(
-    "words", ["--threads 0", "--points 0", "--points -5", "--json nowhere/b.json", "--output b.txt"]
-)
-def test_bench_refuses(words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("b.txt").write_text("")
-    name, value = words.split()
-    small = [] if name == "--points" else ["--points", "400"]
-    assert cli.main(["bench", *small, name, value]) == 2
-    shown = capsys.readouterr()
-    assert name.strip("-") in shown.err and value in shown.err and shown.out == ""
-
-
-@pytest.mark.parametrize(("on_two", "code"), [(9.5, 0), (7.5, 1)])
-def test_bench_guard(
-    on_two: float, code: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(guard, "ratios", lambda: {1: 6.25, 2: on_two})
-    assert cli.main(["bench", "--guard"]) == code
-    shown = capsys.readouterr()
-    assert "6.25" in shown.out and f"{on_two:.2f}" in shown.out
-    assert ("too slow on 2 threads" in shown.err) == bool(code)
-
-
-@pytest.mark.parametrize("words", ["--points 400", "--threads 1", "--json b.json", "--output b"])
-def test_bench_guard_stands_alone(words: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["bench", "--guard", *words.split()]) == 2
-    assert f"{words.split()[0]} must be left out" in capsys.readouterr().err
-
-
-def test_verify(capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["verify", "bar", "shear", "--output", "known"]) == 0
-    shown = capsys.readouterr()
-    assert "checks hold" in shown.err.splitlines()[0]
-    for word in ("problem", "quantity", "expected", "got", "error", "order", "time"):
-        assert word in shown.out.splitlines()[0]
-    data = json.loads(Path("known/verification.json").read_text())
-    assert [one["name"] for one in data["problems"]] == ["bar", "shear"]
-    assert data["set"] == "quick"
-    table = Path("known/verification.md").read_text()
-    for one in data["problems"]:
-        assert Path("known", f"{one['name']}.png").stat().st_size > 5_000
-        for check in one["checks"]:
-            assert check["holds"] and check["why"] in table and check["quantity"] in shown.out
-
-
-def test_verify_fails_with_exit_code_1(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    check = verify.Check.at_most("error", bound=1.0, got=2.0, why="one is enough")
-    wrong = verify.Problem("bar", "Bar", lambda full: verify.Outcome([check], Figure()))
-    monkeypatch.setattr(bar, "PROBLEM", wrong)
-    assert cli.main(["verify", "bar"]) == 1
-    assert " NO " in capsys.readouterr().out
-
-
-def test_verify_refuses_unknown_problems(capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["verify", "bar", "pendulum"]) == 2
-    shown = capsys.readouterr()
-    assert "pendulum" in shown.err and "column" in shown.err and shown.out == ""
-
-
-@pytest.mark.parametrize(
-    ("words", "name"),
-    [
-        ("--cells 0.4 0.2", "cells"),
-        ("--cells 0.4 0.2 0.15", "cells"),
-        ("--cells 1 0 0", "cells"),
-        ("--cells 100 50 25", "cell"),
-        ("--threads 0", "threads"),
-    ],
-)
-def test_converge_refuses(words: str, name: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["converge", *words.split()]) == 2
-    assert f"{name} must be" in capsys.readouterr().err
-    assert not Path("convergence").exists()
-
-
-@pytest.mark.parametrize("command", ["verify bar", "converge --cells 4 2 1"])
-def test_directories_that_cannot_be_made(command: str, capsys: pytest.CaptureFixture[str]) -> None:
-    Path("taken").write_text("a file")
-    for output in ("taken", "taken/below"):
-        assert cli.main([*command.split(), "--output", output]) == 2
-        shown = capsys.readouterr()
-        assert output in shown.err and shown.out == ""
-
-
-def test_converge(capsys: pytest.CaptureFixture[str]) -> None:
-    words = "converge --reading identified --cells 4 2 1 --quiet --output finer"
-    assert cli.main(words.split()) == 0
-    assert "h = 1 m" in capsys.readouterr().out
-    assert Path("finer/convergence.md").exists() and Path("finer/soil_identified_4.h5").exists()
 
 
 def test_installed_command() -> None:

@@ -1,8 +1,6 @@
 """The NumPy twin against theory, without the compiled kernel."""
 
-from collections.abc import Sequence
 from dataclasses import replace
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,17 +8,11 @@ import pytest
 from numpy.typing import NDArray
 
 from reference import Material, Reference
-from reference.bodies import quarter_turn
 from reference.drucker_prager import (
     cone,
-    elastic_increment,
-    invariants,
     moduli,
-    return_mapping,
     rotate,
-    tension_limit,
 )
-from reference.interface import APART, Interface
 from reference.shapes import hat, weights
 from reference.walls import hold_momentum, hold_velocity
 
@@ -28,7 +20,6 @@ Array = NDArray[np.float64]
 FREE = [("free", 0.0, 0.0)] * 4
 SOIL = Material(1800.0, 30e6, 0.33)
 PLASTIC = Material(1800.0, 30e6, 0.33, "drucker_prager", 22.0, 1e3)
-CONES = ("outer", "inner", "plane_strain_associated", "plane_strain")
 H = 0.1
 
 
@@ -67,12 +58,6 @@ def interior(twin: Reference) -> NDArray[np.bool_]:
 
 def flow(twin: Reference, gradient: Any) -> None:
     twin.velocity = twin.position @ np.array(gradient, float).T
-
-
-def random_stress(seed: int, size: float, n: int = 400) -> Array:
-    half = size * np.random.default_rng(seed).standard_normal((n, 3, 3))
-    half[:, 2, :2] = half[:, :2, 2] = 0.0
-    return half + np.swapaxes(half, 1, 2)
 
 
 @pytest.mark.parametrize("shape", ["linear", "ugimp"])
@@ -314,91 +299,6 @@ def test_column_at_rest_carries_its_weight() -> None:
     np.testing.assert_allclose(twin.stress[:, 0], 0.33 / 0.67 * twin.stress[:, 1], rtol=1e-9)
 
 
-def test_cones_match_their_closed_forms() -> None:
-    phi, psi = np.radians(22), np.radians(7)
-    soil = replace(PLASTIC, dilation=7.0)
-
-    def triaxial(a: float, sign: int) -> tuple[float, float]:
-        below = np.sqrt(3) * (3 + sign * np.sin(a))
-        return 6 * np.sin(a) / below, 6 * np.cos(a) / below
-
-    def plane(a: float) -> tuple[float, float]:
-        below = np.sqrt(9 + 12 * np.tan(a) ** 2)
-        return 3 * np.tan(a) / below, 3 / below
-
-    etabar = 3 * np.sin(psi) / np.sqrt(9 + 3 * np.sin(psi) ** 2)
-    d = np.sqrt(1 - etabar**2 / 3) + etabar * np.sin(phi) / 3
-    expected = {
-        "outer": (*triaxial(phi, -1), triaxial(psi, -1)[0]),
-        "inner": (*triaxial(phi, 1), triaxial(psi, 1)[0]),
-        "plane_strain_associated": (*plane(phi), plane(psi)[0]),
-        "plane_strain": (np.sin(phi) / d, np.cos(phi) / d, etabar),
-    }
-    for name, coefficients in expected.items():
-        assert cone(replace(soil, cone=name)) == pytest.approx(coefficients, rel=1e-13)
-
-
-@pytest.mark.parametrize("name", CONES)
-@pytest.mark.parametrize("cutoff", [np.inf, 500.0])
-def test_return_ends_on_or_inside_the_surface(name: str, cutoff: float) -> None:
-    soil = replace(PLASTIC, cone=name, dilation=5.0, tension_cutoff=cutoff)
-    eta, xi, _ = cone(soil)
-    limit = tension_limit(soil)
-    trial = np.concatenate([random_stress(4, 3e2), random_stress(5, 3e3)])
-    stress, plastic_strain = return_mapping(soil, trial)
-    p, _, q = invariants(stress)
-    before_p, _, before_q = invariants(trial)
-    f = q + eta * p - xi * 1e3
-    yielded = before_q + eta * before_p > xi * 1e3
-    assert yielded.sum() > 50 and (p > 0.999 * limit).sum() > 20 and (~yielded).sum() > 20
-    assert f.max() < 1e-8 and p.max() < limit + 1e-8
-    np.testing.assert_allclose(np.maximum(f, p - limit)[yielded], 0, atol=1e-8)
-    inside = ~yielded & (before_p <= limit)
-    np.testing.assert_array_equal(stress[inside], trial[inside])
-    assert np.all(plastic_strain[inside] == 0) and np.all(plastic_strain >= 0)
-    again, more = return_mapping(soil, stress)
-    np.testing.assert_allclose(again, stress, atol=1e-8)
-    np.testing.assert_allclose(more, 0, atol=1e-14)
-
-
-@pytest.mark.parametrize("name", CONES)
-@pytest.mark.parametrize("cutoff", [np.inf, 500.0])
-def test_associated_return_is_the_closest_point_in_energy(name: str, cutoff: float) -> None:
-    soil = replace(PLASTIC, cone=name, dilation=22.0, tension_cutoff=cutoff)
-    _, shear, bulk = moduli(soil)
-    trial = random_stress(5, 3e3, 150)
-    stress, _ = return_mapping(soil, trial)
-    p, s, _ = invariants(trial - stress)
-    plastic = s / (2 * shear) + p[:, None, None] * np.eye(3) / (3 * bulk)
-    admissible, _ = return_mapping(soil, random_stress(6, 2e3, 200))
-    work = np.einsum("pij,apij->ap", plastic, admissible[:, None] - stress[None])
-    assert work.max() < 1e-9
-
-
-def test_equivalent_plastic_strain_is_that_of_the_deviatoric_plastic_strain() -> None:
-    trial = random_stress(7, 3e3)
-    stress, plastic_strain = return_mapping(PLASTIC, trial)
-    _, shear, _ = moduli(PLASTIC)
-    deviatoric = (invariants(trial)[1] - invariants(stress)[1]) / (2 * shear)
-    expected = np.sqrt(2 / 3 * np.sum(deviatoric**2, axis=(1, 2)))
-    np.testing.assert_allclose(plastic_strain, expected, atol=1e-15)
-
-
-def test_plane_strain_failure_is_mohr_coulomb() -> None:
-    """Shearing at the angle of dilation ends where the in-plane stresses meet Mohr-Coulomb."""
-    for name, dilation in (("plane_strain_associated", 22.0), ("plane_strain", 0.0)):
-        soil = replace(PLASTIC, cone=name, dilation=dilation)
-        opening = np.sin(np.radians(dilation))
-        rate = np.diag([opening + 1, opening - 1, 0])[None]
-        stress = -1e5 * np.eye(3)[None]
-        for _ in range(3000):
-            stress, _ = return_mapping(soil, stress + elastic_increment(soil, 1e-5 * rate))
-        high, low = stress[0, 0, 0], stress[0, 1, 1]
-        phi = np.radians(22)
-        strength = 2e3 * np.cos(phi) - (high + low) * np.sin(phi)
-        assert high - low == pytest.approx(strength, rel=1e-6)
-
-
 def test_released_energy_is_that_of_the_returned_stress() -> None:
     twin = block(3, materials=[PLASTIC, SOIL])
     twin.material[::2] = 1
@@ -443,65 +343,3 @@ def test_splines_meet_linear_motion_up_to_the_walls() -> None:
     at_left, at_top = nodes[:, 0] == 0.0, np.isclose(nodes[:, 1], 5 * H)
     np.testing.assert_allclose(s[:3][:, at_left].sum(axis=1), 1.0)
     np.testing.assert_allclose(s[3:6][:, at_top].sum(axis=1), 1.0)
-
-
-def runs_into_an_ellipse(seed: int, friction: float, heaviest: float) -> Interface:
-    """Soil that runs at random into an ellipse of mass 1, in nodes of at most the `heaviest`."""
-    random = np.random.default_rng(seed)
-    count, axes = random.integers(2, 9), np.array([1.0, 0.5])
-    turn = random.uniform(0, 2 * np.pi, count)
-    place = axes * np.column_stack([np.cos(turn), np.sin(turn)])
-    normal = place / axes**2
-    normal /= np.hypot(*normal.T)[:, None]
-    body: Any = SimpleNamespace(
-        centre=np.zeros(2), mass=1.0, inertia=axes @ axes / 4, friction=friction
-    )
-    whole: Any = SimpleNamespace(velocity=np.zeros(2), spin=0.0)
-    mass, free = random.uniform(0.02, heaviest, count), random.standard_normal((count, 2))
-    return Interface(body, whole, place, normal, np.full(count, APART), mass, free)
-
-
-@pytest.mark.parametrize(
-    ("friction", "heaviest", "seeds"),
-    [
-        (0.1, 0.5, (31, 124, 126, 142, 260)),  # soil turns about on its way to where it settles
-        (0.1, 0.5, (112, 374, 453, 595, 655, 1945, 2078)),  # whole steps of Newton's method cycle
-        (0.7, 3.0, (93, 344, 686, 834)),  # no part of such a step is better: in turn
-        (0.7, 3.0, range(200)),
-    ],
-)
-def test_soil_meets_a_stone_by_the_law_of_coulomb(
-    friction: float, heaviest: float, seeds: Sequence[int]
-) -> None:
-    """None runs into it or is pulled; friction is enough for what sticks, and the most it can be,
-    against the slip, where soil slips; no energy is gained."""
-    for seed in seeds:
-        found = runs_into_an_ellipse(seed, friction, heaviest)
-        assert found.unsettled == 0.0
-        motion = np.append(found.whole.velocity, found.whole.spin)
-        across = quarter_turn(found.normal)
-        left = found.velocity() - found.motion_at @ motion
-        out, slip = (np.sum(left * of, axis=1) for of in (found.normal, across))
-        pushed, rubbed = (np.sum(found.taken * of, axis=1) for of in (found.normal, across))
-        assert out.min() > -1e-9 and pushed.min() > -1e-9
-        assert np.abs(out * pushed).max() < 1e-9
-        assert (np.abs(rubbed) - friction * pushed).max() < 1e-9
-        slips = np.abs(slip) > 1e-9
-        most = -np.sign(slip) * friction * pushed
-        np.testing.assert_allclose(rubbed[slips], most[slips], atol=1e-9)
-        energy = found.mass @ (found.velocity() ** 2).sum(axis=1) + motion @ found.inertia @ motion
-        assert energy < found.mass @ (found.free**2).sum(axis=1) * (1 + 1e-12)
-
-
-def test_soil_on_the_verge_of_slipping_takes_all_its_friction() -> None:
-    """Rounding may find that it neither sticks nor slips; its impulse is the same either way."""
-    random, friction = np.random.default_rng(3), 0.7
-    stone = runs_into_an_ellipse(0, friction, 1.0)
-    for rubbing in np.where(random.random(1000) < 0.5, friction, -friction):
-        arm = random.standard_normal(2)
-        yields = random.uniform(1.0, 9.0) * np.eye(2) + np.outer(arm, arm)
-        impulse = np.array([1.0, rubbing])
-        apart = -yields @ impulse
-        if apart[0] < 0:
-            found, _, _ = stone._met(apart, yields)
-            np.testing.assert_allclose(found, impulse, rtol=1e-11)
