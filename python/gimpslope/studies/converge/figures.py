@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.figure import Figure
 
@@ -17,16 +18,25 @@ _COSTLY = ("peak_energy", "peak_time", "total", "run_out")
 
 
 def values(study: Convergence) -> Figure:
-    """Each figure against the cell: draws, their means, and the limits where there are any."""
-    rows = math.ceil(len(QUANTITIES) / _COLUMNS)
+    """Each figure that was reached against the cell: draws, their means, and the limits where there
+    are any."""
+    drawn = {
+        quantity: {name: series.values(quantity.figure) for name, series in study.series.items()}
+        for quantity in QUANTITIES
+    }
+    reached = {
+        quantity: found
+        for quantity, found in drawn.items()
+        if any(np.isfinite(each).any() for each in found.values())
+    }
+    rows = max(1, math.ceil(len(reached) / _COLUMNS))
     made = Figure(figsize=(3.3 * _COLUMNS, 2.4 * rows + 0.5), layout="constrained")
     models = list(study.series)
-    for place, quantity in enumerate(QUANTITIES, start=1):
+    for place, (quantity, found) in enumerate(reached.items(), start=1):
         ax = made.add_subplot(rows, _COLUMNS, place)
-        drawn = {model: series.values(quantity.figure) for model, series in study.series.items()}
-        against_cell(study.cells, drawn, ax, from_zero=False)
-        found = study.limits(quantity.figure)
-        known = {model: (one.limit, one.uncertainty) for model, one in found.items()}
+        against_cell(study.cells, found, ax, from_zero=False)
+        limits = study.limits(quantity.figure)
+        known = {model: (one.limit, one.uncertainty) for model, one in limits.items()}
         limits_beside(known, ax, models)
         ax.set_title(quantity.label, fontsize="medium")
     _legend(made, columns=2 * len(models))

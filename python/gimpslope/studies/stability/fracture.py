@@ -142,7 +142,7 @@ def draw(spacings: FloatArray, rates: dict[Shape, FloatArray]) -> Figure:
         if shape in REACH:
             ax.axvline(2 * REACH[shape], color=f"C{number}", linestyle=":", linewidth=0.8)
     ax.set(xlabel="spacing of the points (cells); dotted: 2 x reach", ylabel="strain rate / true")
-    ax.legend(loc="upper right")
+    ax.legend(loc="lower left")
     return figure
 
 

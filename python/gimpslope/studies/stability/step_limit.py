@@ -274,14 +274,15 @@ def draw(found: dict[Case, Limits], offsets: FloatArray) -> Figure:
         shown = {c: of for c, of in found.items() if c.per_side == 2 and c.dimensions == dimensions}
         shapes = list(dict.fromkeys(case.shape for case in shown))
         for case, of in shown.items():
-            colour = f"C{shapes.index(case.shape)}"
+            number = shapes.index(case.shape)
+            colour = f"C{number}"
             mark = {"usf": "o", "usl": "v", "musl": "x"}[case.scheme]
             ax.plot(
                 offsets,
                 of.elastic,
                 mark,
                 color=colour,
-                ms=5,
+                ms=10 - 2 * number,  # those of equal limits around each other
                 mfc="none",
                 label=f"{case.shape}, {case.scheme}",
             )
@@ -294,7 +295,7 @@ def draw(found: dict[Case, Limits], offsets: FloatArray) -> Figure:
         ax.set_title("row; lines: theory" if dimensions == 1 else f"block, nu = {POISSON}")
     figure.axes[0].set_ylabel("largest stable c dt / h")
     figure.legend(
-        *figure.axes[0].get_legend_handles_labels(), loc="outside right center", fontsize=7
+        *figure.axes[0].get_legend_handles_labels(), loc="outside right center", fontsize=8
     )
     return figure
 
