@@ -7,6 +7,7 @@ import csv
 import json
 import math
 import re
+import warnings
 import signal
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,7 +22,7 @@ from gimpslope import cli, interrupts, kernel
 from gimpslope.method import DomainUpdate, Precision, Scheme
 from gimpslope.studies import tradeoff
 from gimpslope.studies.tradeoff import pareto, problems, rows, summary, words
-from gimpslope.studies.tradeoff.measure import Measured, measured, missing, sweep
+from gimpslope.studies.tradeoff.measure import Measured, Task, measured, missing, run, sweep
 from gimpslope.studies.tradeoff.plan import Case, Plan, alone, cases, every, is_allowed, plan
 
 BAR = problems.PROBLEMS["bar"]
@@ -109,6 +110,13 @@ def test_a_cut_off_line_costs_no_more_than_its_run(tmp_path: Path) -> None:
     for one in measured(FEW, tmp_path):
         assert one.rounds == 2 and one.fastest <= one.core_seconds <= one.slowest
         assert 0 < one.core_seconds < 10
+
+
+def test_methods_that_fail_on_purpose_are_not_warned_of() -> None:
+    usl = Case("bar", 5.0, (("scheme", "usl"), ("courant", 0.8)))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert run(Task(usl, 1)).case == usl
 
 
 def test_runs_of_another_version_or_method_do_not_count(

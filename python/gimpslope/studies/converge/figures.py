@@ -29,7 +29,9 @@ def values(study: Convergence) -> Figure:
         for quantity, found in drawn.items()
         if any(np.isfinite(each).any() for each in found.values())
     }
-    rows = max(1, math.ceil(len(reached) / _COLUMNS))
+    if not reached:
+        return _nothing()
+    rows = math.ceil(len(reached) / _COLUMNS)
     made = Figure(figsize=(3.3 * _COLUMNS, 2.4 * rows + 0.5), layout="constrained")
     models = list(study.series)
     for place, (quantity, found) in enumerate(reached.items(), start=1):
@@ -66,6 +68,12 @@ def costs(study: Convergence) -> Figure:
             ax.set(xticks=[], yticks=[])
     grid_markers(made.axes[-1], study.cells)
     _legend(made, columns=4)
+    return made
+
+
+def _nothing() -> Figure:
+    made = Figure(figsize=(6.0, 1.0))
+    made.text(0.5, 0.5, "none of the figures was reached on any grid", ha="center", va="center")
     return made
 
 

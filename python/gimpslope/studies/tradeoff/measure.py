@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 import multiprocessing
+import warnings
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
@@ -15,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...interrupts import uninterrupted
+from ...method_warning import MethodWarning
 from ...simulation import NotSettledError
 from ...solver import Diverged
 from .. import processes
@@ -112,7 +114,9 @@ def run(task: Task) -> Row:
     """One run; a motion that fails has an infinite error."""
     case, number = task
     try:
-        solution = PROBLEMS[case.problem].solve(case.cell, case.method, case.model)
+        with warnings.catch_warnings():  # it goes where they warn of on purpose
+            warnings.simplefilter("ignore", MethodWarning)
+            solution = PROBLEMS[case.problem].solve(case.cell, case.method, case.model)
     except (Diverged, NotSettledError) as failed:
         return Row(case, number, math.inf, math.nan, str(failed))
     if not math.isfinite(solution.error):
