@@ -56,7 +56,7 @@ class Recorder:
         self._rows_end = 0
         self._stage_start = 0.0
         self._intervals = 0
-        self._seconds = 0.0
+        self._seconds = self._processor_seconds = 0.0
         self._steps = 0
         self._flushed = clock.monotonic()
         self._writer = RunWriter(
@@ -112,12 +112,14 @@ class Recorder:
     def advance(self, until: float, *, rows: int | None = None) -> dict[str, float]:
         """Step on towards the time `until` and record what is due on the way: at most `rows` rows,
         or where left out as many as fit in a moment of wall time. The last row."""
-        steps, start = self._solver.steps, clock.perf_counter()
+        steps = self._solver.steps
+        start, processor_start = clock.perf_counter(), clock.process_time()
         try:
             self._solver.advance_through(self._due(until, rows or self._batch))
         finally:
             spent = clock.perf_counter() - start
             self._seconds += spent
+            self._processor_seconds += clock.process_time() - processor_start
             self._steps += self._solver.steps - steps
             columns = self._solver.take_rows()
             self._keep(columns)
@@ -204,7 +206,9 @@ class Recorder:
             self._row()
         if sound and STAGES[self._stage] == "slide":
             self._writer.write_final(self._solver.time, self._fields(FIELDS))
-        self._writer.write_timing(self._seconds, self._steps * len(self._solver))
+        self._writer.write_timing(
+            self._seconds, self._processor_seconds, self._steps * len(self._solver)
+        )
         self._writer.finish(status, detail, summarise(Run(self._writer.path)))
 
     def _show(self) -> None:

@@ -71,7 +71,7 @@ def test_errors_are_below_those_asked_for(
 def test_time_is_predicted(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     """A run of seconds, after pilots that are cheap; for a quiet machine."""
     monkeypatch.setattr(search, "_PILOT_SHARE", 0.0)
-    plan = gs.plan(scene("soil"), 0.1, PEAK[:1], method=METHOD, progress=False)
+    plan = gs.plan(scene("soil"), 0.03, PEAK[:1], method=METHOD, progress=False)
     assert plan.levels == 1
     answer = plan.run(tmp_path / "run.h5")
     assert plan.seconds == pytest.approx(answer.seconds, rel=0.3)

@@ -126,6 +126,6 @@ def write_run(path: Path, *, until: float = END, finished: bool = True) -> Run:
     writer.flush()
     if finished:
         writer.write_final(until, fields(until))
-        writer.write_timing(wall_seconds=2.0, point_steps=1000)
+        writer.write_timing(wall_seconds=2.0, processor_seconds=3.0, point_steps=1000)
         writer.finish("finished", "the duration was reached", Run(path).summary)
     return Run(path)

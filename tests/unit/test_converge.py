@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import math
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -74,7 +75,7 @@ def test_values_are_those_of_the_runs(folder: Path, study: converge.Convergence)
         assert run.method.viscosity == reference.READINGS["identified"].viscosity
         (one,) = series.grids[number]
         assert one is not None and one.points == len(run.points)
-        assert one.core_seconds == run.attributes["timing"]["wall_seconds"]
+        assert one.core_seconds == run.attributes["timing"]["processor_seconds"]
         peak = smooth_peak(run.energy)
         assert peak is not None
         assert one.figures["peak_energy"] == peak.kinetic / 1e3
@@ -121,6 +122,18 @@ def test_finished_runs_are_kept(folder: Path, study: converge.Convergence) -> No
     for figure in ("peak_energy", "total"):
         one, other = (each.series["no stones"].values(figure) for each in (study, again))
         assert one.tolist() == other.tolist()
+
+
+def test_files_from_before_processor_time_was_kept_cost_their_threads(
+    folder: Path, study: converge.Convergence, tmp_path: Path
+) -> None:
+    (old,) = (shutil.copy(file, tmp_path) for file in folder.glob("*_0.4.h5"))
+    with h5py.File(old, "r+") as file:
+        timing = json.loads(file.attrs["timing"]) | {"wall_seconds": 7.0}
+        del timing["processor_seconds"]
+        file.attrs["timing"] = json.dumps(timing)
+        file.attrs["method"] = json.dumps(json.loads(file.attrs["method"]) | {"threads": 3})
+    assert measure(gs.open(old), 0.4).core_seconds == 21.0
 
 
 def test_a_slide_that_still_accelerates_has_no_peak(tmp_path: Path) -> None:

@@ -239,7 +239,7 @@ def _states_on_disk(writer: hdf5.RunWriter) -> list[bytes]:
             energy_released=1.0, settling_time=2.0, settling_ratio=3.0, settling_unbalanced=4.0
         )
         writer.write_final(3.0, synthetic.fields(3.0))
-        writer.write_timing(1.0, 2)
+        writer.write_timing(1.0, 2.0, 3)
         writer.finish("finished", "done", {})
     return states
 

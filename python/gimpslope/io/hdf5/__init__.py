@@ -7,7 +7,8 @@ Root attributes
     leaves it to the materials; not in files of older versions), process (machine and number of the
     one that writes);
     JSON text: scene, method, stages, recording, and at the end of the run summary and timing
-    (wall_seconds spent stepping, point_steps).
+    (wall_seconds spent stepping, processor_seconds of all threads in them, not in files of older
+    versions, and point_steps).
 /points
     the points at the start of the slide, in the order in which they were given; until the slide
     starts, those of the unloaded slope.

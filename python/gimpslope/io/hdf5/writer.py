@@ -182,11 +182,16 @@ class RunWriter:
             final.attrs["time"] = time
             _create_fixed(final, values, FIELDS)
 
-    def write_timing(self, wall_seconds: float, point_steps: int) -> None:
-        """Write the time spent stepping (s) and the points times the steps taken in it."""
+    def write_timing(self, wall_seconds: float, processor_seconds: float, point_steps: int) -> None:
+        """Write the time spent stepping, by the clock and of all threads together (s), and the
+        points times the steps taken in it."""
         with self._flushed() as file:
             file.attrs["timing"] = json.dumps(
-                {"wall_seconds": wall_seconds, "point_steps": point_steps}
+                {
+                    "wall_seconds": wall_seconds,
+                    "processor_seconds": processor_seconds,
+                    "point_steps": point_steps,
+                }
             )
 
     def finish(self, status: str, detail: str, summary: Mapping[str, Any] | None = None) -> None:

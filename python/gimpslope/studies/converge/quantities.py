@@ -45,7 +45,8 @@ class Measured:
     surface : heights of the final one as in `heights`; None if it has not come to rest
     gap : between the two nearest stones, in cells; NaN without two
     points, point_steps : numbers of material points, and of these times steps
-    core_seconds : wall time spent stepping times threads, s
+    core_seconds : processor time spent stepping, s; of a run file of an older version, which does
+        not have it, the wall time times the threads
     """
 
     figures: Mapping[str, float]
@@ -67,7 +68,7 @@ def measure(run: Run, width: float) -> Measured:
         math.nan if gap is None else gap,
         len(run.points),
         timing["point_steps"],
-        timing["wall_seconds"] * run.method.threads,
+        timing.get("processor_seconds", timing["wall_seconds"] * run.method.threads),
     )
 
 

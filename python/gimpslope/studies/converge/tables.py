@@ -40,7 +40,7 @@ _SURFACES = (
     "Root of the mean square of the vertical distance between final surfaces, m, over columns of "
     "{width:g} m.\n"
 )
-_COSTS = "Core-seconds are wall time times threads, of each draw.\n"
+_COSTS = "Core-seconds are the processor time of all threads while stepping, of each draw.\n"
 
 
 def markdown(study: Convergence) -> str:
