@@ -174,6 +174,7 @@ def pilot(run: gs.Run, **given: object) -> Pilot:
         "steps": 1000,
         "loading_steps": 100,
         "seconds": 1.0,
+        "stepping": 1.0,
         "reached": 10.0,
         "values": {},
         "history": {},
@@ -183,15 +184,18 @@ def pilot(run: gs.Run, **given: object) -> Pilot:
 
 
 def test_time_follows_from_steps_and_points(tmp_path: Path) -> None:
+    """What is spent beside the steps of a coarse pilot tells nothing of a step."""
     none = gs.Run.__new__(gs.Run)
-    taken = [
-        pilot(none, points=n, steps=steps, seconds=steps * (1e-4 + 1e-6 * n))
-        for n, steps in ((400, 1000), (1600, 2000))
-    ]
-    assert seconds(taken, 6400, 1) == pytest.approx(4000 * (1e-4 + 6.4e-3))
+
+    def taken(points: int, steps: int, beside: float) -> Pilot:
+        stepping = steps * (1e-4 + 1e-6 * points)
+        return pilot(none, points=points, steps=steps, seconds=stepping + beside, stepping=stepping)
+
+    pilots = [taken(400, 1000, 0.9), taken(1600, 2000, 0.2)]
+    assert seconds(pilots, 6400, 1) == pytest.approx(4000 * (1e-4 + 6.4e-3) + 4 * 0.2)
     whole, loading = 2000, 100
     half = loading + 0.5 * (whole - loading)
-    assert seconds(taken, 1600, 0, 0.5) == pytest.approx(half * (1e-4 + 1.6e-3))
+    assert seconds(pilots, 1600, 0, 0.5) == pytest.approx(half * (1e-4 + 1.6e-3) + 0.2)
 
 
 class Peaked:

@@ -10,9 +10,10 @@ from .pilot import Pilot
 def seconds(pilots: Sequence[Pilot], points: int, levels: int, slide: float = 1.0) -> float:
     """Wall time of a run, s.
 
-    A step takes some time for itself and some a point, which the last two pilots tell apart; the
-    number of steps follows from the cell, as the step does, and grows from grid to grid as it did
-    last (loose soil at the front has fast waves, and finer grids have looser points).
+    A step takes some time for itself and some a point, which the last two pilots tell apart; what a
+    run takes beside its steps, most of it output, goes by the points. The number of steps follows
+    from the cell, as the step does, and grows from grid to grid as it did last (loose soil at the
+    front has fast waves, and finer grids have looser points).
 
     Parameters
     ----------
@@ -23,14 +24,14 @@ def seconds(pilots: Sequence[Pilot], points: int, levels: int, slide: float = 1.
     """
     last = pilots[-1]
     growth = 2.0
-    constant, a_point = 0.0, last.seconds / last.steps / last.points
+    a_step = last.stepping / last.steps
+    constant, a_point = 0.0, a_step / last.points
     if len(pilots) > 1:
         before = pilots[-2]
         growth = max(last.steps / last.reached / (before.steps / before.reached), growth)
-        slope = (last.seconds / last.steps - before.seconds / before.steps) / (
-            last.points - before.points
-        )
+        slope = (a_step - before.stepping / before.steps) / (last.points - before.points)
         if 0 < slope < a_point:
-            constant, a_point = last.seconds / last.steps - slope * last.points, slope
+            constant, a_point = a_step - slope * last.points, slope
     steps = last.loading_steps + slide * (last.steps - last.loading_steps)
-    return float(steps * growth**levels * (constant + a_point * points))
+    beside = (last.seconds - last.stepping) * points / last.points
+    return float(steps * growth**levels * (constant + a_point * points) + beside)

@@ -25,7 +25,7 @@ class Pilot:
     cell : m
     points, steps : their number; steps of all stages
     loading_steps : those before the slide
-    seconds : wall time of the whole of it, s
+    seconds, stepping : wall time of the whole of it, and of its steps alone, s
     reached : end of its slide, s
     values : the wanted quantities by name, SI units, at its end; NaN for what it has not reached
     history : those that need the slope at rest, at times of the slide (s)
@@ -37,6 +37,7 @@ class Pilot:
     steps: int
     loading_steps: int
     seconds: float
+    stepping: float
     reached: float
     values: dict[str, float]
     history: dict[float, dict[str, float]]
@@ -55,6 +56,7 @@ def fly(setup: Setup, path: Path, names: Sequence[str], *, overwrite: bool = Tru
         steps=steps,
         loading_steps=steps - int(energy.step[-1]),
         seconds=spent,
+        stepping=run.attributes["timing"]["wall_seconds"],
         reached=float(energy.time[-1]),
         values=peak_values(run, names) | state_values(run.final, names),
         history=_history(run, names),
