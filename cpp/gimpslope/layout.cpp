@@ -10,49 +10,49 @@
 namespace gimpslope {
 namespace {
 
+/// The cell that a point is in along an axis; `cells` of it from the origin.
+std::int32_t cell_at(double cells, double position) {
+  constexpr double farthest = 1e9;
+  require(std::abs(cells) < farthest, "position", position, "within 1e9 cells of the origin");
+  const auto cell = static_cast<std::int32_t>(cells);
+  return cell - (cells < cell);
+}
+
 /// The cell of each point's first node.
 std::vector<Cell> first_cells(const Points& points, const Grid& grid, double behind,
                               double half_length) {
   std::vector<Cell> cells(points.size);
   const bool own = !points.half_length.empty();
   for (int k = 0; k < points.size; ++k) {
+    const double x = points.position[0][k], y = points.position[1][k];
     const double lx = own ? points.half_length[0][k] : half_length;
     const double ly = own ? points.half_length[1][k] : half_length;
-    const double column =
-        std::floor((points.position[0][k] - lx - grid.x()) / grid.cell() - behind);
-    const double row = std::floor((points.position[1][k] - ly - grid.y()) / grid.cell() - behind);
-    constexpr double farthest = 1e9;
-    require(std::abs(column) < farthest, "position", points.position[0][k],
-            "within 1e9 cells of the origin");
-    require(std::abs(row) < farthest, "position", points.position[1][k],
-            "within 1e9 cells of the origin");
-    cells[k] = {static_cast<std::int32_t>(column), static_cast<std::int32_t>(row)};
+    cells[k] = {cell_at((x - lx - grid.x()) / grid.cell() - behind, x),
+                cell_at((y - ly - grid.y()) / grid.cell() - behind, y)};
   }
   return cells;
 }
 
-/// Stable counting sort of `order` by key(point), which lies in [0, keys).
-template <class Key>
-void sort_by(std::vector<std::int32_t>& order, int keys, Key key) {
+/// Stable counting sort of `order` by the key of each point, which lies in [0, keys).
+void sort_by(std::vector<std::int32_t>& order, int keys, const std::vector<std::int32_t>& key) {
   std::vector<std::int32_t> place(keys + 1, 0), sorted(order.size());
-  for (const std::int32_t point : order) ++place[key(point) + 1];
+  for (const std::int32_t of : key) ++place[of + 1];
   std::partial_sum(place.begin(), place.end(), place.begin());
-  for (const std::int32_t point : order) sorted[place[key(point)]++] = point;
+  for (const std::int32_t point : order) sorted[place[key[point]]++] = point;
   order.swap(sorted);
 }
 
 /// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a
-/// single one: 0, 1 or 2 for each point. Sorted by these, points that share their nodes come in
-/// runs of one length, and the processor foresees where a run ends.
+/// single one: adds 0, 1 or 2 to three times the key of each point. Sorted by these, points that
+/// share their nodes come in runs of one length, and the processor foresees where a run ends.
 template <class Same>
-std::vector<std::uint8_t> parts_of_cells(const std::vector<std::int32_t>& order, Same same) {
-  std::vector<std::uint8_t> part(order.size());
+void part_cells(const std::vector<std::int32_t>& order, std::vector<std::int32_t>& key, Same same) {
   for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
     for (end = begin + 1; end < order.size() && same(order[begin], order[end]);) ++end;
     const std::size_t fours = begin + (end - begin) / 4 * 4, pairs = begin + (end - begin) / 2 * 2;
-    for (std::size_t k = begin; k < end; ++k) part[order[k]] = k < fours ? 0 : (k < pairs ? 1 : 2);
+    for (std::size_t k = begin; k < end; ++k)
+      key[order[k]] = 3 * key[order[k]] + (k < fours ? 0 : (k < pairs ? 1 : 2));
   }
-  return part;
 }
 
 /// Makes the nodes active that points in these cells can reach before the next sort.
@@ -98,44 +98,36 @@ Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half
   grid.fit({low.column - kMargin, low.row - kMargin},
            {high.column + reach - 1 + kMargin, high.row + reach - 1 + kMargin});
 
-  std::vector<std::int32_t> order(points.size);
+  // By column, then by slab, material and row: the rows of a slab once for each material, so that
+  // blocks of one material are long.
+  const int rows = slab_rows(reach), slabs = (high.row - low.row) / rows + 1;
+  std::vector<std::int32_t> order(points.size), key(points.size);
   std::iota(order.begin(), order.end(), 0);
-  const auto row = [&](std::int32_t point) {
-    return cells[point].row - low.row;
-  };
-  sort_by(order, high.column - low.column + 1,
-          [&](std::int32_t point) { return cells[point].column - low.column; });
-  // Rows of a slab once for each material, so that blocks of one material are long.
-  const int rows = slab_rows(reach);
-  const auto place = [&](std::int32_t point) {
-    const int slab = row(point) / rows;
-    return (slab * materials + points.material[point]) * rows + row(point) % rows;
-  };
-  const int places = ((high.row - low.row) / rows + 1) * materials * rows;
-  sort_by(order, places, place);
-  const auto part = parts_of_cells(order, [&](std::int32_t a, std::int32_t b) {
-    return cells[a].column == cells[b].column && place(a) == place(b);
+  for (int k = 0; k < points.size; ++k) key[k] = cells[k].column - low.column;
+  sort_by(order, high.column - low.column + 1, key);
+  for (int k = 0; k < points.size; ++k) {
+    const int row = cells[k].row - low.row, slab = row / rows;
+    key[k] = (slab * materials + points.material[k]) * rows + row % rows;
+  }
+  sort_by(order, slabs * materials * rows, key);
+  part_cells(order, key, [&](std::int32_t a, std::int32_t b) {
+    return cells[a].column == cells[b].column && key[a] == key[b];
   });
-  sort_by(order, 3 * places, [&](std::int32_t point) { return 3 * place(point) + part[point]; });
+  sort_by(order, 3 * slabs * materials * rows, key);
 
   // Blocks begin on cache lines where they can, which full ones of kBlock points do.
   constexpr int kLine = kCacheLine / sizeof(double);
   static_assert(kBlock % kLine == 0);
   Layout layout;
+  int next = 0;  // first row of the next slab
   for (int k = 0; k < points.size; ++k) {
-    const std::int32_t point = order[k];
-    const int slab = row(point) / rows;
-    const std::int32_t material = points.material[point];
-    const bool new_slab = k == 0 || slab != row(order[k - 1]) / rows;
+    const std::int32_t point = order[k], material = points.material[point];
+    const int row = cells[point].row - low.row;
+    const bool new_slab = row >= next;
     if (new_slab || layout.blocks.back().material != material ||
         (k - layout.blocks.back().begin > kBlock - kLine && k % kLine == 0)) {
-      if (new_slab) {
-        const auto block = static_cast<std::int32_t>(layout.blocks.size());
-        while (static_cast<int>(layout.slabs.size()) <= slab) {
-          const int first_row = static_cast<int>(layout.slabs.size()) * rows;
-          layout.slabs.push_back({block, block, first_row, first_row + rows});
-        }
-      }
+      const auto block = static_cast<std::int32_t>(layout.blocks.size());
+      for (; next <= row; next += rows) layout.slabs.push_back({block, block, next, next + rows});
       layout.blocks.push_back({k, k, material});
     }
     layout.blocks.back().end = k + 1;
