@@ -61,8 +61,10 @@ inline void show_velocity(const GridView& g, int node, const Pair& v) {
   quad(g.velocity + 4 * node) = Quad{v[0], v[0], v[1], v[1]};
 }
 
-/// Velocity of the nodes of a row within the walls; begins the row's ledger where one is kept.
-inline void start_nodes(const GridView& g, int row, Ledger* ledger) {
+/// Velocity of the nodes of a row within the walls; begins the row's ledger where one is kept. Of a
+/// copy of the grid's view the compiler knows that no store to a node changes it.
+inline void start_nodes(const GridView& grid, int row, Ledger* ledger) {
+  const GridView g = grid;
   if (ledger != nullptr) *ledger = {};
   const auto set = [&](int node, const Pair& v) {
     show_velocity(g, node, v);
@@ -117,7 +119,9 @@ enum class Afterwards { none, shown, forces_kept };
 /// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass, momentum and forces,
 /// and adds to the row's ledger where one is kept.
 template <bool kLedger, Afterwards kAfterwards>
-void finish_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
+void finish_nodes(const GridView& grid, int row, const StepInput& input, Ledger* ledger) {
+  const GridView g = grid;  // see start_nodes
+  const StepInput step = input;
   const auto advance = [&](NodeStep& s) {
     s.after = s.raw + step.dt * s.inverse_mass * s.total();
   };
