@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -10,12 +11,39 @@ from types import FrameType
 
 BOTH = (signal.SIGINT, signal.SIGTERM)
 
+_MOMENT = 0.05  # s
+
 
 @contextmanager
 def terminable() -> Iterator[None]:
-    """Let SIGTERM do what Ctrl-C does, for as long as the block lasts."""
-    with _answered([signal.SIGTERM], signal.default_int_handler):
+    """Let SIGTERM do what Ctrl-C does, and lose neither, for as long as the block lasts."""
+    with _answered([signal.SIGTERM], signal.default_int_handler), heard():
         yield
+
+
+@contextmanager
+def heard() -> Iterator[None]:
+    """Where SIGTERM raises `KeyboardInterrupt`: raise one a moment later again that Python ignored,
+    as it does every exception in a callback, such as those of weak references and of HDF5."""
+    before = sys.unraisablehook
+    main = threading.main_thread().ident
+    coming: list[threading.Timer] = []
+
+    def answer(ignored: sys.UnraisableHookArgs) -> None:
+        if not issubclass(ignored.exc_type, KeyboardInterrupt):
+            before(ignored)
+            return
+        coming.append(threading.Timer(_MOMENT, signal.pthread_kill, [main, signal.SIGTERM]))
+        coming[-1].start()
+
+    sys.unraisablehook = answer
+    try:
+        yield
+    finally:
+        sys.unraisablehook = before
+        for again in coming:
+            again.cancel()
+            again.join()
 
 
 @contextmanager

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import sys
+import time
+import weakref
 from collections.abc import Iterator
 
 import pytest
@@ -35,6 +38,39 @@ def test_signals_are_not_lost_where_python_ignores_exceptions(number: signal.Sig
         Callback()
         assert came == [number]
     assert signal.getsignal(number) is before
+
+
+@pytest.mark.parametrize("number", BOTH)
+def test_what_python_ignores_is_raised_again(
+    number: signal.Signals, capfd: pytest.CaptureFixture[str]
+) -> None:
+    class Told:
+        pass
+
+    def end(_: object) -> None:
+        signal.raise_signal(number)
+
+    told = Told()
+    reference = weakref.ref(told, end)
+    hook = sys.unraisablehook
+    with pytest.raises(KeyboardInterrupt), interrupts.terminable():
+        del told
+        assert reference() is None
+        time.sleep(10)
+    assert sys.unraisablehook is hook
+    assert capfd.readouterr().err == ""
+
+
+def test_other_ignored_exceptions_are_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Broken:
+        def __del__(self) -> None:
+            raise OSError("lost")
+
+    told: list[type[BaseException]] = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda ignored: told.append(ignored.exc_type))
+    with interrupts.terminable():
+        Broken()
+    assert told == [OSError]
 
 
 @pytest.mark.parametrize("number", BOTH)

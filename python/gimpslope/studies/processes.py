@@ -14,7 +14,7 @@ from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from typing import Generic, NamedTuple, TypeVar
 
-from ..interrupts import BOTH, caught
+from ..interrupts import BOTH, caught, heard
 
 Given = TypeVar("Given")
 
@@ -120,8 +120,9 @@ def _run(work: Callable[[], Given], answer: Connection) -> None:
         signal.signal(number, signal.default_int_handler)
     threading.Thread(target=_end_with_parent, daemon=True).start()
     try:
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, BOTH)
-        outcome = Outcome((work(),))
+        with heard():
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, BOTH)
+            outcome = Outcome((work(),))
     except (Exception, KeyboardInterrupt) as error:
         outcome = Outcome((), error)
     finally:
