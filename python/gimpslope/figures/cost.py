@@ -28,8 +28,8 @@ def error_against_cost(
     colour: str,
     known_to: float | None = None,
 ) -> Axes:
-    """The errors (%) of results on several grids against their cost (core-seconds: wall time times
-    threads), log-log: a line, a marker of its own for each grid. What is not finite, or no error at
+    """The errors (%) of results on several grids against their cost (core-seconds of processor
+    time), log-log: a line, a marker of its own for each grid. What is not finite, or no error at
     all, is left out.
 
     Parameters
@@ -49,7 +49,7 @@ def error_against_cost(
         ax.plot(cost[place], error[place], marker, color=colour, markersize=6.5)
     if known_to:
         ax.axhline(known_to, color=colour, linestyle=":", linewidth=1.2)
-    ax.set(xlabel="core-seconds (wall time times threads)", ylabel="error (%)")
+    ax.set(xlabel="core-seconds (processor)", ylabel="error (%)")
     ax.margins(_MARGIN)
     for axis in (ax.xaxis, ax.yaxis):
         low, high = axis.get_view_interval()
