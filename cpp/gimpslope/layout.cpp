@@ -10,7 +10,7 @@
 namespace gimpslope {
 namespace {
 
-/// The cell that a point is in along an axis; `cells` of it from the origin.
+/// The cell at a distance of so many `cells` from the origin; `position` is for the error.
 std::int32_t cell_at(double cells, double position) {
   constexpr double farthest = 1e9;
   require(std::abs(cells) < farthest, "position", position, "within 1e9 cells of the origin");
@@ -36,7 +36,7 @@ std::vector<Cell> first_cells(const Points& points, const Grid& grid, double beh
 /// Stable counting sort of `order` by the key of each point, which lies in [0, keys).
 void sort_by(std::vector<std::int32_t>& order, int keys, const std::vector<std::int32_t>& key) {
   std::vector<std::int32_t> place(keys + 1, 0), sorted(order.size());
-  for (const std::int32_t of : key) ++place[of + 1];
+  for (const std::int32_t value : key) ++place[value + 1];
   std::partial_sum(place.begin(), place.end(), place.begin());
   for (const std::int32_t point : order) sorted[place[key[point]]++] = point;
   order.swap(sorted);
@@ -45,6 +45,7 @@ void sort_by(std::vector<std::int32_t>& order, int keys, const std::vector<std::
 /// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a
 /// single one: adds 0, 1 or 2 to three times the key of each point. Sorted by these, points that
 /// share their nodes come in runs of one length, and the processor foresees where a run ends.
+/// `same` may look at keys: those of a cell change once its end is found.
 template <class Same>
 void part_cells(const std::vector<std::int32_t>& order, std::vector<std::int32_t>& key, Same same) {
   for (std::size_t begin = 0, end; begin < order.size(); begin = end) {

@@ -23,27 +23,37 @@ def terminable() -> Iterator[None]:
 
 @contextmanager
 def heard() -> Iterator[None]:
-    """Where SIGTERM raises `KeyboardInterrupt`: raise one a moment later again that Python ignored,
-    as it does every exception in a callback, such as those of weak references and of HDF5."""
-    before = sys.unraisablehook
-    main = threading.main_thread().ident
-    coming: list[threading.Timer] = []
+    """In the main thread, where SIGTERM raises `KeyboardInterrupt`: let it come again after Python
+    has ignored one, as it does every exception in a callback, such as those of weak references and
+    of HDF5; a moment later, or where the block ends before."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before, lost = sys.unraisablehook, False
 
     def answer(ignored: sys.UnraisableHookArgs) -> None:
-        if not issubclass(ignored.exc_type, KeyboardInterrupt):
+        nonlocal lost
+        if issubclass(ignored.exc_type, KeyboardInterrupt):
+            lost = True
+            signal.setitimer(signal.ITIMER_REAL, _MOMENT)
+        else:
             before(ignored)
-            return
-        coming.append(threading.Timer(_MOMENT, signal.pthread_kill, [main, signal.SIGTERM]))
-        coming[-1].start()
 
-    sys.unraisablehook = answer
-    try:
-        yield
-    finally:
-        sys.unraisablehook = before
-        for again in coming:
-            again.cancel()
-            again.join()
+    def come_again(*_: object) -> None:
+        nonlocal lost
+        lost = False
+        signal.raise_signal(signal.SIGTERM)
+
+    with _answered([signal.SIGALRM], come_again):
+        sys.unraisablehook = answer
+        try:
+            yield
+        finally:
+            sys.unraisablehook = before
+            if lost:
+                signal.setitimer(signal.ITIMER_REAL, 0.0)
+        if lost:
+            raise KeyboardInterrupt
 
 
 @contextmanager

@@ -146,7 +146,7 @@ def test_errors_against_core_seconds_are_drawn() -> None:
         "largest displacement",
         "run-out of 99 % of the mass",
     ]
-    assert {ax.get_xlabel() for ax in made.axes} == {"core-seconds (wall time times threads)"}
+    assert {ax.get_xlabel() for ax in made.axes} == {"core-seconds (processor)"}
     ax = made.axes[2]
     assert ax.get_xscale() == ax.get_yscale() == "log"
     lines = {line.get_label(): line for line in ax.lines if line.get_label()[0] != "_"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
+import threading
 import time
 import weakref
 from collections.abc import Iterator
@@ -40,25 +41,57 @@ def test_signals_are_not_lost_where_python_ignores_exceptions(number: signal.Sig
     assert signal.getsignal(number) is before
 
 
+def lose(number: signal.Signals) -> None:
+    """A signal whose exception Python ignores."""
+
+    class Told:
+        pass
+
+    told = Told()
+    reference = weakref.ref(told, lambda _: signal.raise_signal(number))
+    del told
+    assert reference() is None
+
+
 @pytest.mark.parametrize("number", BOTH)
 def test_what_python_ignores_is_raised_again(
     number: signal.Signals, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    class Told:
-        pass
-
-    def end(_: object) -> None:
-        signal.raise_signal(number)
-
-    told = Told()
-    reference = weakref.ref(told, end)
-    hook = sys.unraisablehook
+    hook, start = sys.unraisablehook, time.monotonic()
     with pytest.raises(KeyboardInterrupt), interrupts.terminable():
-        del told
-        assert reference() is None
+        lose(number)
         time.sleep(10)
+    assert time.monotonic() < start + 5
     assert sys.unraisablehook is hook
     assert capfd.readouterr().err == ""
+
+
+def test_what_python_ignores_at_the_end_is_raised_there() -> None:
+    with pytest.raises(KeyboardInterrupt), interrupts.terminable():
+        lose(signal.SIGTERM)
+    time.sleep(0.1)  # nothing comes afterwards
+
+
+def test_what_python_ignores_is_held_back_where_all_is() -> None:
+    done = False
+    with pytest.raises(KeyboardInterrupt), interrupts.terminable():
+        lose(signal.SIGTERM)
+        with interrupts.uninterrupted():
+            time.sleep(0.2)
+            done = True
+    assert done
+
+
+def test_other_threads_change_nothing() -> None:
+    def enter() -> None:
+        with interrupts.terminable():
+            hooks.append(sys.unraisablehook)
+
+    hooks: list[object] = []
+    thread = threading.Thread(target=enter)
+    thread.start()
+    thread.join()
+    assert hooks == [sys.unraisablehook]
 
 
 def test_other_ignored_exceptions_are_told_of(monkeypatch: pytest.MonkeyPatch) -> None:

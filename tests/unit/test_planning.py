@@ -195,7 +195,7 @@ def test_time_follows_from_steps_and_points(tmp_path: Path) -> None:
     assert seconds(pilots, 6400, 1) == pytest.approx(4000 * (1e-4 + 6.4e-3) + 4 * 0.2)
     whole, loading = 2000, 100
     half = loading + 0.5 * (whole - loading)
-    assert seconds(pilots, 1600, 0, 0.5) == pytest.approx(half * (1e-4 + 1.6e-3) + 0.2)
+    assert seconds(pilots, 1600, 0, 0.5) == pytest.approx(half * (1e-4 + 1.6e-3) + 0.1)
 
 
 class Peaked:

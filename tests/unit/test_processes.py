@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from functools import partial
 from pathlib import Path
 
@@ -28,6 +29,26 @@ if __name__ == "__main__":
         time.sleep(0.05)
     print(type(worker.outcome.error).__name__)
 """
+
+
+def lose_an_interrupt() -> None:
+    """It comes in a callback, where Python ignores it."""
+
+    class Told:
+        pass
+
+    told = Told()
+    reference = weakref.ref(told, lambda _: signal.raise_signal(signal.SIGTERM))
+    del told
+    assert reference() is None
+    time.sleep(20)
+
+
+def test_an_interrupt_that_python_ignores_ends_the_work(capfd: pytest.CaptureFixture[str]) -> None:
+    start = time.monotonic()
+    (outcome,) = processes.run_all([lose_an_interrupt], jobs=1)
+    assert isinstance(outcome.error, KeyboardInterrupt) and time.monotonic() < start + 15
+    assert capfd.readouterr().err == ""
 
 
 def kill_itself() -> None:

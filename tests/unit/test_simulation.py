@@ -312,7 +312,6 @@ def test_summary_has_its_keys_and_agrees_with_the_file(finished: gs.Run) -> None
     rate = summary["points"] * summary["steps"] / summary["wall_seconds"]
     assert summary["point_steps_per_second"] == pytest.approx(rate)
     timing = finished.attributes["timing"]
-    assert timing["wall_seconds"] == summary["wall_seconds"]
     threads = finished.attributes["threads"]
     assert 0 < timing["processor_seconds"] < 1.1 * threads * timing["wall_seconds"] + 0.05
 

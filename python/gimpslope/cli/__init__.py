@@ -32,8 +32,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the exit code is 0, 2 for refused arguments, 1 for a failed run or a
     check that does not hold, and 130 for one that was interrupted, by Ctrl-C or SIGTERM."""
     options = _parser().parse_args(arguments)
-    with terminable():
-        return _run(options)
+    try:
+        with terminable():
+            return _run(options)
+    except KeyboardInterrupt:
+        print("gimpslope: interrupted", file=sys.stderr)
+        return 130
 
 
 def _run(options: argparse.Namespace) -> int:
@@ -43,8 +47,6 @@ def _run(options: argparse.Namespace) -> int:
     except (ValueError, TypeError, OSError) as refused:
         print(f"gimpslope: {refused}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        return 130
     try:
         with warnings.catch_warnings():
             warnings.showwarning = _show
@@ -52,9 +54,6 @@ def _run(options: argparse.Namespace) -> int:
     except (gs.Diverged, gs.NotSettledError, RunFailed, OSError) as failed:
         print(f"gimpslope: {failed}", file=sys.stderr)
         return 1
-    except KeyboardInterrupt:
-        print("gimpslope: interrupted", file=sys.stderr)
-        return 130
 
 
 def _show(

@@ -11,9 +11,9 @@ def seconds(pilots: Sequence[Pilot], points: int, levels: int, slide: float = 1.
     """Wall time of a run, s.
 
     A step takes some time for itself and some a point, which the last two pilots tell apart; what a
-    run takes beside its steps, most of it output, goes by the points. The number of steps follows
-    from the cell, as the step does, and grows from grid to grid as it did last (loose soil at the
-    front has fast waves, and finer grids have looser points).
+    run takes beside its steps, most of it output, goes by the points and the length of the slide.
+    The number of steps follows from the cell, as the step does, and grows from grid to grid as it
+    did last (loose soil at the front has fast waves, and finer grids have looser points).
 
     Parameters
     ----------
@@ -33,5 +33,5 @@ def seconds(pilots: Sequence[Pilot], points: int, levels: int, slide: float = 1.
         if 0 < slope < a_point:
             constant, a_point = a_step - slope * last.points, slope
     steps = last.loading_steps + slide * (last.steps - last.loading_steps)
-    beside = (last.seconds - last.stepping) * points / last.points
+    beside = (last.seconds - last.stepping) * slide * points / last.points
     return float(steps * growth**levels * (constant + a_point * points) + beside)

@@ -40,7 +40,10 @@ _SURFACES = (
     "Root of the mean square of the vertical distance between final surfaces, m, over columns of "
     "{width:g} m.\n"
 )
-_COSTS = "Core-seconds are the processor time of all threads while stepping, of each draw.\n"
+_COSTS = (
+    "Core-seconds are the processor time of all threads while stepping (of run files from before "
+    "that was kept, the wall time times the threads), of each draw.\n"
+)
 
 
 def markdown(study: Convergence) -> str:

@@ -41,7 +41,7 @@ def chart(problem: Problem, measured: Sequence[Measured]) -> Figure:
     _numbers(ax, shown, best)
     failed = f", {len(measured) - len(shown)} more failed" * (len(measured) > len(shown))
     ax.set_title(f"{problem.title}: {len(shown)} cases{failed}")
-    ax.set(xlabel="core-seconds (processor time)", ylabel="error (%)")
+    ax.set(xlabel="core-seconds (processor)", ylabel="error (%)")
     _told(beside, shown, best)
     beside.legend(
         handles=_legend(problem, shown), loc="lower left", fontsize="small", ncols=2, frameon=False
