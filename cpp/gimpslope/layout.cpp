@@ -73,15 +73,36 @@ void activate_reached(const std::vector<Cell>& cells, Cell low, Cell high, int r
   }
 }
 
-/// Shares of about as many points for each thread.
-void share_out(Layout& layout, int points, int threads) {
-  layout.shares.assign(1, 0);
-  for (std::int32_t slab = 0; slab < static_cast<std::int32_t>(layout.slabs.size()); ++slab) {
-    const std::int32_t before = layout.blocks[layout.slabs[slab].begin].begin;
-    const auto shares = static_cast<std::int64_t>(layout.shares.size());
-    if (before * std::int64_t{threads} >= shares * points) layout.shares.push_back(slab);
+/// Shares of about as many points for each thread, of even slabs and of odd ones: the first that
+/// fit into what is due to it, so that most are neighbours and small ones fill what is left.
+void share_out(Layout& layout, int threads) {
+  const auto size = [&](std::int32_t slab) {
+    const Slab& of = layout.slabs[slab];
+    return of.begin == of.end ? 0 : layout.blocks[of.end - 1].end - layout.blocks[of.begin].begin;
+  };
+  const auto slabs = static_cast<std::int32_t>(layout.slabs.size());
+  std::vector<std::int32_t> left[2];
+  int points[2] = {0, 0};
+  for (std::int32_t slab = 0; slab < slabs; ++slab) {
+    left[slab % 2].push_back(slab);
+    points[slab % 2] += size(slab);
   }
-  layout.shares.resize(threads + 1, static_cast<std::int32_t>(layout.slabs.size()));
+  for (int thread = 0; thread < threads; ++thread) {
+    for (int parity = 0; parity < 2; ++parity) {
+      layout.shares.push_back(static_cast<std::int32_t>(layout.shared.size()));
+      const int due = points[parity] / (threads - thread);
+      int taken = 0;
+      std::vector<std::int32_t> others;
+      for (const std::int32_t slab : left[parity]) {
+        const bool fits = taken + size(slab) <= due;
+        (fits ? layout.shared : others).push_back(slab);
+        if (fits) taken += size(slab);
+      }
+      left[parity].swap(others);
+      points[parity] -= taken;
+    }
+  }
+  layout.shares.push_back(static_cast<std::int32_t>(layout.shared.size()));
 }
 
 }  // namespace
@@ -136,7 +157,7 @@ Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half
   }
   activate_reached(cells, low, high, reach, grid);
   layout.slabs.back().end_row = grid.rows();
-  share_out(layout, points.size, threads);
+  share_out(layout, threads);
   points.reorder(order);
   return layout;
 }

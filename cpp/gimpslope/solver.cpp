@@ -197,6 +197,7 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
           margins_.data(),
           layout_.slabs.data(),
           static_cast<int>(layout_.slabs.size()),
+          layout_.shared.data(),
           layout_.shares.data(),
           laws_.data(),
           half_length_,

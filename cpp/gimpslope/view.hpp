@@ -180,7 +180,8 @@ struct View {
   double* margins;  // of each block, see sweep/yielding.hpp
   const Slab* slabs;
   int slab_count;
-  const std::int32_t* shares;  // slabs [shares[t], shares[t + 1]) are those of thread t
+  const std::int32_t* shared;  // slabs by thread, the even ones of each before its odd ones
+  const std::int32_t* shares;  // even ones of thread t from shares[2 t] on, odd ones one further
   const Law* laws;             // of each material
   double half_length;          // of all points alike, where points.half_length is null
   DomainUpdate domain_update;

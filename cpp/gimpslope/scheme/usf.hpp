@@ -20,21 +20,39 @@ struct Usf {
   static void step(const View<Real>& view, const StepInput& input, Report* reports) {
     together(*view.team, [&](int thread) {
       Stopwatch watch(thread == 0 ? view.seconds : nullptr);
-      start_rows(view, thread);
-      sum_terms<Shape, kOwnDomain>(view, input.order, thread);
-      with_bodies(view, [&](const auto& doubles) {
-        hold_nodes_of_bodies<Shape, kOwnDomain>(doubles, thread);
-      });
-      watch.lap(&Seconds::nodes);
-      update_stresses(view, thread, input, reports);
+      // Bodies and XPIC need all nodes at once; else each row waits for the sweep that takes it.
+      const bool apart = view.bodies != nullptr || view.grid.terms != nullptr;
+      if (apart) {
+        start_rows(view, thread);
+        sum_terms<Shape, kOwnDomain>(view, input.order, thread);
+        with_bodies(view, [&](const auto& doubles) {
+          hold_nodes_of_bodies<Shape, kOwnDomain>(doubles, thread);
+        });
+        watch.lap(&Seconds::nodes);
+      }
+      const auto start = [&](int begin, int end) {
+        if (apart) return;
+        watch.lap(&Seconds::stress);
+        for (int row = begin; row < end; ++row) start_row(view, row);
+        watch.lap(&Seconds::nodes);
+      };
+      update_stresses(view, thread, input, reports, start);
       watch.lap(&Seconds::stress);
-      with_bodies(view,
-                  [&](const auto& doubles) { take_forces_of_bodies(doubles, input, thread); });
-      finish_rows<Afterwards::none>(view, input, thread);
-      add_terms(view, thread);
-      with_bodies(view, [&](const auto& doubles) { move_bodies(doubles, input, thread); });
-      watch.lap(&Seconds::nodes);
-      for_each_slab(view, thread, [&](int slab) {
+      if (apart) {
+        with_bodies(view,
+                    [&](const auto& doubles) { take_forces_of_bodies(doubles, input, thread); });
+        finish_rows<Afterwards::none>(view, input, thread);
+        add_terms(view, thread);
+        with_bodies(view, [&](const auto& doubles) { move_bodies(doubles, input, thread); });
+        watch.lap(&Seconds::nodes);
+      }
+      const auto finish = [&](int begin, int end) {
+        if (apart) return;
+        watch.lap(&Seconds::move);
+        for (int row = begin; row < end; ++row) finish_row<Afterwards::none>(view, input, row);
+        watch.lap(&Seconds::nodes);
+      };
+      for_each_slab(view, thread, finish, [&](int slab) {
         Report report;
         report.ledger = reports[slab].ledger;
         report.energies = reports[slab].energies;
@@ -56,17 +74,12 @@ struct Usf {
       if (view.bodies != nullptr) act(view);
   }
 
+  /// `start` brings rows of nodes to what the first sweep takes from them.
+  template <class Start>
   static void update_stresses(const View<Real>& view, int thread, const StepInput& input,
-                              Report* reports) {
+                              Report* reports, Start start) {
     const bool averaged = view.grid.cells != nullptr;
-    if (averaged) {
-      for_each_slab(view, thread, [&](int slab) {
-        for_each_block(view, slab, [&](const Block& block) {
-          if (!is_rigid(view, block)) dilatation_block<Shape, kOwnDomain>(view, block);
-        });
-      });
-    }
-    for_each_slab(view, thread, [&](int slab) {
+    const auto stresses = [&](int slab) {
       Ledger ledger;
       Energies energies;
       for_each_block(view, slab, [&](const Block& block) {
@@ -81,14 +94,22 @@ struct Usf {
       });
       reports[slab].ledger = ledger;
       reports[slab].energies = energies;
-    });
-    if (averaged) {
-      for_each_slab(view, thread, [&](int slab) {
-        for_each_block(view, slab, [&](const Block& block) {
-          if (!is_rigid(view, block)) averaged_force_block<Shape, kOwnDomain>(view, block);
-        });
-      });
+    };
+    if (!averaged) {
+      for_each_slab(view, thread, start, stresses);
+      return;
     }
+    for_each_slab(view, thread, start, [&](int slab) {
+      for_each_block(view, slab, [&](const Block& block) {
+        if (!is_rigid(view, block)) dilatation_block<Shape, kOwnDomain>(view, block);
+      });
+    });
+    for_each_slab(view, thread, stresses);
+    for_each_slab(view, thread, [&](int slab) {
+      for_each_block(view, slab, [&](const Block& block) {
+        if (!is_rigid(view, block)) averaged_force_block<Shape, kOwnDomain>(view, block);
+      });
+    });
   }
 };
 

@@ -13,16 +13,21 @@ void together(Team& team, Work work) {
   team.run([](void* context, int thread) { (*static_cast<Work*>(context))(thread); }, &work);
 }
 
-/// Runs work(slab) for every `stride`-th slab from `first` on: those of the thread's own share, so
-/// that their points stay in its cache from sweep to sweep, then what others have left of theirs.
+/// Slabs that two threads may work on at the same time, for none of them shares a node with another
+/// one; or all, where nodes do not matter.
+enum class Slabs { even, odd, all };
+
+/// Runs work(slab) for these slabs: those of the thread's own share, so that their points stay in
+/// its cache from sweep to sweep, then what others have left of theirs.
 template <class Work, class Real>
-void take_slabs(const View<Real>& view, int thread, int first, int stride, Work work) {
+void take_slabs(const View<Real>& view, int thread, Slabs which, Work work) {
   const int threads = view.team->size();
   for (int k = 0; k < threads; ++k) {
     const int owner = (thread + k) % threads;
-    const int begin = view.shares[owner], end = view.shares[owner + 1];
-    const int skipped = ((first - begin) % stride + stride) % stride;
-    for (int slab; (slab = begin + skipped + stride * view.team->claim(owner)) < end;) work(slab);
+    const std::int32_t* shares = view.shares + 2 * owner;
+    const int begin = shares[which == Slabs::odd ? 1 : 0];
+    const int end = shares[which == Slabs::even ? 1 : 2];
+    for (int next; (next = begin + view.team->claim(owner)) < end;) work(view.shared[next]);
   }
   view.team->barrier();
 }
@@ -31,13 +36,25 @@ void take_slabs(const View<Real>& view, int thread, int first, int stride, Work 
 /// the same time reach the same node. Called by all threads of a team.
 template <class Work, class Real>
 void for_each_slab(const View<Real>& view, int thread, Work work) {
-  for (int parity = 0; parity < 2; ++parity) take_slabs(view, thread, parity, 2, work);
+  for (const Slabs which : {Slabs::even, Slabs::odd}) take_slabs(view, thread, which, work);
+}
+
+/// The same, with rows(begin, end) for all rows of nodes before any point reaches them: an even
+/// slab reaches its own rows and those of the next one, and no other even one reaches these.
+template <class Rows, class Work, class Real>
+void for_each_slab(const View<Real>& view, int thread, Rows rows, Work work) {
+  take_slabs(view, thread, Slabs::even, [&](int slab) {
+    const int last = slab + 1 < view.slab_count ? slab + 1 : slab;
+    rows(view.slabs[slab].first_row, view.slabs[last].end_row);
+    work(slab);
+  });
+  take_slabs(view, thread, Slabs::odd, work);
 }
 
 /// Runs work(row) for all rows of nodes. Called by all threads of a team.
 template <class Work, class Real>
 void for_each_row(const View<Real>& view, int thread, Work work) {
-  take_slabs(view, thread, 0, 1, [&](int slab) {
+  take_slabs(view, thread, Slabs::all, [&](int slab) {
     for (int row = view.slabs[slab].first_row; row < view.slabs[slab].end_row; ++row) work(row);
   });
 }

@@ -160,23 +160,29 @@ void finish_nodes(const GridView& grid, int row, const StepInput& input, Ledger*
       });
 }
 
-/// All rows of nodes at the start of a step, each with its ledger.
+/// A row of nodes at the start of a step, with its ledger.
+template <class Real>
+void start_row(const View<Real>& view, int row) {
+  start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
+}
+
 template <class Real>
 void start_rows(const View<Real>& view, int thread) {
-  for_each_row(view, thread, [&](int row) {
-    start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
-  });
+  for_each_row(view, thread, [&](int row) { start_row(view, row); });
+}
+
+template <Afterwards kAfterwards, class Real>
+void finish_row(const View<Real>& view, const StepInput& input, int row) {
+  if (view.ledger != nullptr) {
+    finish_nodes<true, kAfterwards>(view.grid, row, input, view.ledger + row);
+  } else {
+    finish_nodes<false, kAfterwards>(view.grid, row, input, nullptr);
+  }
 }
 
 template <Afterwards kAfterwards, class Real>
 void finish_rows(const View<Real>& view, const StepInput& input, int thread) {
-  for_each_row(view, thread, [&](int row) {
-    if (view.ledger != nullptr) {
-      finish_nodes<true, kAfterwards>(view.grid, row, input, view.ledger + row);
-    } else {
-      finish_nodes<false, kAfterwards>(view.grid, row, input, nullptr);
-    }
-  });
+  for_each_row(view, thread, [&](int row) { finish_row<kAfterwards>(view, input, row); });
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
