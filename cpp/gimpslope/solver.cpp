@@ -195,6 +195,7 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
           grid_.view(),
           layout_.blocks.data(),
           margins_.data(),
+          gradients_.data(),
           layout_.slabs.data(),
           static_cast<int>(layout_.slabs.size()),
           layout_.shared.data(),
@@ -227,6 +228,7 @@ void Solver::prepare() {
     reports_.resize(layout_.slabs.size());
     forget_margins();
     if (method_.ledger) ledger_rows_.resize(grid_.rows());
+    if (grid_.view().cells != nullptr) gradients_.resize(layout_.blocks.size());
     if (!bodies_.empty()) {
       const GridView grid = grid_.view();
       bodies_view_ = bodies_.view(
@@ -426,7 +428,8 @@ int Solver::fastest_point() const {
 
 std::int64_t Solver::bytes() const {
   return points_.bytes() + bodies_.bytes() + (single_ ? single_->bytes() : 0) + grid_.bytes() +
-         layout_.blocks.capacity() * (sizeof(Block) + sizeof(double));
+         layout_.blocks.capacity() * (sizeof(Block) + sizeof(double)) +
+         gradients_.capacity() * sizeof(Gradient);
 }
 
 /// The points as they are now.

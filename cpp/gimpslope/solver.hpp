@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bodies.hpp"
+#include "buffer.hpp"
 #include "checks.hpp"
 #include "grid.hpp"
 #include "kernel.hpp"
@@ -151,6 +152,7 @@ class Solver {
   BodiesView bodies_view_{};
   Layout layout_;
   std::vector<double> margins_;  // of each block, see sweep/yielding.hpp
+  Buffer<Gradient> gradients_;   // of each block, where volume strains are averaged
   Basis basis_;
   Kernel<double> kernel_{};
   Kernel<float> single_kernel_{};

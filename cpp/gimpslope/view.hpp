@@ -170,6 +170,11 @@ struct BodiesView {
   double* contacts_unsettled;  // largest change of a speed in the last sweep, m/s
 };
 
+/// h times the velocity gradient of the points of a block.
+struct Gradient {
+  alignas(kCacheLine) double vx_x[kBlock], vx_y[kBlock], vy_x[kBlock], vy_y[kBlock];
+};
+
 /// What a step works on. The points are kept in double or single precision; the grid, and all
 /// that is computed on the way, is in double.
 template <class Real>
@@ -177,7 +182,8 @@ struct View {
   PointsView<Real> points;
   GridView grid;
   const Block* blocks;
-  double* margins;  // of each block, see sweep/yielding.hpp
+  double* margins;      // of each block, see sweep/yielding.hpp
+  Gradient* gradients;  // of each block, null unless volume strains are averaged
   const Slab* slabs;
   int slab_count;
   const std::int32_t* shared;  // slabs by thread, the even ones of each before its odd ones

@@ -85,7 +85,7 @@ struct Usf {
       for_each_block(view, slab, [&](const Block& block) {
         if (is_rigid(view, block)) return;
         if (averaged) {
-          averaged_stress_block<Shape, kOwnDomain>(view, input, block, ledger);
+          averaged_stress_block(view, input, block, ledger);
         } else {
           stress_block<Shape, kOwnDomain>(view, input, block, ledger);
         }

@@ -49,12 +49,12 @@ inline void add_to_cells(double* sums, int n, const CellPlaces& places, const do
   }
 }
 
-/// First of three sweeps: volumes and their rates to the cells.
+/// First of three sweeps: velocity gradients, which are kept, volumes and their rates to the cells.
 template <class Shape, bool kOwnDomain, class Real>
 void dilatation_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
-  Gradient gradient;
+  Gradient& gradient = view.gradients[&block - view.blocks];
   CellPlaces places;
   alignas(kCacheLine) double volume[kBlock], rate[kBlock];
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
@@ -85,15 +85,12 @@ void mean_stress_block(const View<Real>& view, const Block& block) {
 }
 
 /// Stresses from the averaged strains.
-template <class Shape, bool kOwnDomain, class Real>
+template <class Real>
 void averaged_strain_block(const View<Real>& view, const StepInput& input, const Block& block,
                            Ledger& ledger) {
   const int begin = block.begin, n = block.end - block.begin;
-  Weights<Shape, Need::gradients> weights;
-  Gradient gradient;
+  Gradient& gradient = view.gradients[&block - view.blocks];
   CellPlaces places;
-  evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  gather_gradient(view, n, weights, gradient);
   find_cells(view, begin, n, places);
   const double* cells = view.grid.cells;
 #pragma omp simd
@@ -108,10 +105,10 @@ void averaged_strain_block(const View<Real>& view, const StepInput& input, const
 }
 
 /// Second: stresses from the averaged strains, and mean stresses to the cells.
-template <class Shape, bool kOwnDomain, class Real>
+template <class Real>
 void averaged_stress_block(const View<Real>& view, const StepInput& input, const Block& block,
                            Ledger& ledger) {
-  averaged_strain_block<Shape, kOwnDomain>(view, input, block, ledger);
+  averaged_strain_block(view, input, block, ledger);
   mean_stress_block(view, block);
 }
 

@@ -14,11 +14,6 @@
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-/// h times the velocity gradient of the points of a block.
-struct Gradient {
-  alignas(kCacheLine) double vx_x[kBlock], vx_y[kBlock], vy_x[kBlock], vy_y[kBlock];
-};
-
 /// Velocity gradient (paper eq. 21-22).
 template <class Shape, class Real>
 void gather_gradient(const View<Real>& view, int n, const Weights<Shape, Need::gradients>& weights,

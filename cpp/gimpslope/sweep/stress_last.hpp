@@ -52,7 +52,7 @@ template <class Shape, bool kOwnDomain, class Real>
 void strain_block(const View<Real>& view, const StepInput& input, const Block& block,
                   Report& report) {
   if (view.grid.cells != nullptr) {
-    averaged_strain_block<Shape, kOwnDomain>(view, input, block, report.ledger);
+    averaged_strain_block(view, input, block, report.ledger);
   } else {
     const int begin = block.begin, n = block.end - block.begin;
     Weights<Shape, Need::gradients> weights;
