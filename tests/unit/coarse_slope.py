@@ -23,6 +23,13 @@ def simulate(path: Path, **options: Any) -> gs.Run:
     return gs.simulate(output=path, **given)
 
 
+def simulate_whole(path: Path) -> gs.Run:
+    """All of it, with snapshots at times that lie on no interval, too."""
+    return simulate(
+        path, energy_interval=0.01, snapshot_interval=0.5, snapshot_times=(1.6, 0.123, 99.0)
+    )
+
+
 @contextmanager
 def recording(simulation: Simulation, path: Path) -> Iterator[Recorder]:
     """A recorder with the defaults of `simulate`."""

@@ -8,8 +8,10 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
@@ -66,10 +68,23 @@ def test_command(
     assert "--output must be a new file" in capsys.readouterr().err
 
 
+class Ended(NamedTuple):
+    """How a command ended: its exit code, its last line on standard error, whether it showed a
+    traceback, and what is left of its pilots."""
+
+    code: int
+    last: str
+    traceback: bool
+    left: list[Path]
+
+
+IN_GOOD_ORDER = Ended(130, "gimpslope: interrupted", traceback=False, left=[])
+
+
 def terminated(
     command: list[str], folder: Path, plans: int, kill: Callable[[int, int], None] = os.kill
-) -> None:
-    """Ends a command by SIGTERM when so many plans have begun; none of their pilots is left."""
+) -> Ended:
+    """Ends a command by SIGTERM when so many plans have begun."""
     pilots = folder / "pilots"
     pilots.mkdir()
     process = subprocess.Popen(
@@ -88,16 +103,16 @@ def terminated(
     finally:
         process.kill()
         process.communicate()
-    assert process.returncode == 130
-    assert errors.decode().endswith("gimpslope: interrupted\n") and b"Traceback" not in errors
-    assert list(pilots.iterdir()) == []
+    shown = errors.decode()
+    last = shown.splitlines()[-1]
+    return Ended(process.returncode, last, "Traceback" in shown, list(pilots.iterdir()))
 
 
 def test_a_plan_that_is_terminated_takes_its_pilots_along(tmp_path: Path) -> None:
     """Also one in the background of a script, where Ctrl-C is ignored."""
     plan = ["plan", "soil", "--error", "0.001", "--output", str(tmp_path / "soil.h5")]
     in_background = ["sh", "-c", "trap '' INT; exec \"$@\"", ""]
-    terminated([*in_background, *GIMPSLOPE, *plan], tmp_path, plans=1)
+    assert terminated([*in_background, *GIMPSLOPE, *plan], tmp_path, plans=1) == IN_GOOD_ORDER
 
 
 @pytest.mark.parametrize("kill", [os.kill, os.killpg], ids=["alone", "as_a_group"])
@@ -105,7 +120,24 @@ def test_a_study_that_is_terminated_takes_its_plans_along(
     tmp_path: Path, kill: Callable[[int, int], None]
 ) -> None:
     words = ["--error", "0.001", "--jobs", "2", "--output", str(tmp_path / "study")]
-    terminated([*GIMPSLOPE, "reproduce", *words], tmp_path, 2, kill)
+    assert terminated([*GIMPSLOPE, "reproduce", *words], tmp_path, 2, kill) == IN_GOOD_ORDER
+
+
+def test_warnings_of_a_slope_are_lines_of_the_study(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def plan(*_: object, **__: object) -> None:
+        warnings.warn("torn", gs.MethodWarning, stacklevel=2)
+        raise InterruptedError
+
+    monkeypatch.setattr(warnings, "showwarning", warnings.showwarning)
+    monkeypatch.setattr(within.planning, "plan", plan)
+    target = planning.Target(0.1, within.QUANTITIES)
+    of = {"folder": tmp_path, "target": target, "reading": "identified", "seed": 1}
+    with warnings.catch_warnings(), pytest.raises(InterruptedError):
+        warnings.simplefilter("always")
+        within._slope("soil", **of, progress=False)  # type: ignore[arg-type]
+    assert capsys.readouterr().err == "A soil: torn\n"
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import sys
 import time as clock
+import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -120,10 +121,15 @@ def study(
 def _slope(
     name: str, *, folder: Path, target: Target, reading: str, seed: int, progress: bool
 ) -> Slope:
+    def say(what: object) -> None:
+        print(f"{reference.title(name)}: {what}", file=sys.stderr, flush=True)
+
     def tell(what: str) -> None:
         if progress:
-            print(f"{reference.title(name)}: {what}", file=sys.stderr, flush=True)
+            say(what)
 
+    # The process is this slope's own: its warnings are lines of the study, without a place in code.
+    warnings.showwarning = lambda message, *_, **__: say(message)
     tell("pilots")
     plan = planning.plan(
         reference.slope(name, reading, seed=seed),
