@@ -88,7 +88,7 @@ void update_stress(const Material& material, std::span<const double> velocity_gr
   const auto deform = [&](const double* l, Stress& point, double& plastic) {
     const double turn = dt * (l[2] - l[1]);
     double cosine, sine;
-    rotation(1, &turn, &cosine, &sine);
+    rotation(turn, std::abs(turn), cosine, sine);
     const Strain increment{dt * l[0], dt * l[3], 0.5 * dt * (l[1] + l[2])};
     with_constants(of_material, [&](const auto& constants) {
       for (std::int64_t step = 0; step < steps; ++step) {

@@ -38,24 +38,16 @@ inline void tiny_rotation(double angle, double& cosine, double& sine) {
   sine = angle * (1.0 + a * (-1.0 / 6 + a * (1.0 / 120 + a * (-1.0 / 5040))));
 }
 
-/// Cosine and sine of n angles. A stable step turns a point by little: only a block that holds a
-/// larger angle takes the longer series, or the library's functions.
-inline void rotation(int n, const double* angle, double* cosine, double* sine) {
-  double largest = 0.0;
-#pragma omp simd reduction(max : largest)
-  for (int k = 0; k < n; ++k) {
-    tiny_rotation(angle[k], cosine[k], sine[k]);
-    const double size = std::fabs(angle[k]);
-    largest = size > largest ? size : largest;
-  }
-  if (largest <= kTinyAngle) return;
-  for (int k = 0; k < n; ++k) {
-    if (largest <= kSmallAngle) {
-      small_rotation(angle[k], cosine[k], sine[k]);
-    } else {
-      cosine[k] = std::cos(angle[k]);
-      sine[k] = std::sin(angle[k]);
-    }
+/// The same for any angle of a block, by the series that its largest one allows or by the library's
+/// functions.
+inline void rotation(double angle, double largest, double& cosine, double& sine) {
+  if (largest <= kTinyAngle) {
+    tiny_rotation(angle, cosine, sine);
+  } else if (largest <= kSmallAngle) {
+    small_rotation(angle, cosine, sine);
+  } else {
+    cosine = std::cos(angle);
+    sine = std::sin(angle);
   }
 }
 

@@ -37,11 +37,71 @@ inline Quad twice(const double* pair) {
 #endif
 }
 
+/// Element m of a quad, four times.
+[[gnu::always_inline]] inline Quad spread(Quad q, int m) {
+#ifdef __AVX2__
+  const auto v = reinterpret_cast<__m256d>(q);  // m is known once the loop over it is unrolled
+  if (m == 0) return reinterpret_cast<Quad>(_mm256_permute4x64_pd(v, 0x00));
+  if (m == 1) return reinterpret_cast<Quad>(_mm256_permute4x64_pd(v, 0x55));
+  if (m == 2) return reinterpret_cast<Quad>(_mm256_permute4x64_pd(v, 0xAA));
+  return reinterpret_cast<Quad>(_mm256_permute4x64_pd(v, 0xFF));
+#else
+  return Quad{q[m], q[m], q[m], q[m]};
+#endif
+}
+
+/// {a, b, a, b} of the first (m = 0) or second (m = 1) pair of a quad.
+[[gnu::always_inline]] inline Quad spread_pair(Quad q, int m) {
+#ifdef __AVX2__
+  const auto v = reinterpret_cast<__m256d>(q);
+  if (m == 0) return reinterpret_cast<Quad>(_mm256_permute4x64_pd(v, 0x44));
+  return reinterpret_cast<Quad>(_mm256_permute4x64_pd(v, 0xEE));
+#else
+  return Quad{q[2 * m], q[2 * m + 1], q[2 * m], q[2 * m + 1]};
+#endif
+}
+
+/// Of four quads, one of their first elements, one of their second ones, and so on.
+[[gnu::always_inline]] inline void transpose(Quad (&q)[4]) {
+#ifdef __AVX__
+  const auto a = reinterpret_cast<__m256d>(q[0]), b = reinterpret_cast<__m256d>(q[1]);
+  const auto c = reinterpret_cast<__m256d>(q[2]), d = reinterpret_cast<__m256d>(q[3]);
+  const __m256d even = _mm256_unpacklo_pd(a, b), odd = _mm256_unpackhi_pd(a, b);
+  const __m256d later_even = _mm256_unpacklo_pd(c, d), later_odd = _mm256_unpackhi_pd(c, d);
+  q[0] = reinterpret_cast<Quad>(_mm256_permute2f128_pd(even, later_even, 0x20));
+  q[1] = reinterpret_cast<Quad>(_mm256_permute2f128_pd(odd, later_odd, 0x20));
+  q[2] = reinterpret_cast<Quad>(_mm256_permute2f128_pd(even, later_even, 0x31));
+  q[3] = reinterpret_cast<Quad>(_mm256_permute2f128_pd(odd, later_odd, 0x31));
+#else
+  const Quad a = q[0], b = q[1], c = q[2], d = q[3];
+  for (int i = 0; i < 4; ++i) q[i] = Quad{a[i], b[i], c[i], d[i]};
+#endif
+}
+
+/// Without signs.
+[[gnu::always_inline]] inline Quad size_of(Quad q) {
+  using Bits [[gnu::vector_size(sizeof(Quad))]] = long long;
+  return reinterpret_cast<Quad>(reinterpret_cast<Bits>(q) & 0x7fff'ffff'ffff'ffff);
+}
+
+/// The larger elements; those of b where one of a is NaN.
+[[gnu::always_inline]] inline Quad larger(Quad a, Quad b) { return a > b ? a : b; }
+
 /// Two doubles: a vector in the plane.
 using Pair = Eigen::Array<double, 2, 1>;
 
 inline Eigen::Map<const Pair, Eigen::Aligned16> pair(const double* two) {
   return Eigen::Map<const Pair, Eigen::Aligned16>(two);
+}
+
+/// The same number, of which the compiler does not know that it is the same.
+[[gnu::always_inline]] inline double another(double x) {
+#if defined(__x86_64__)
+  asm("" : "+x"(x));
+#elif defined(__aarch64__)
+  asm("" : "+w"(x));
+#endif
+  return x;
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

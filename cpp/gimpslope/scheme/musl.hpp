@@ -62,6 +62,7 @@ struct Musl {
     Change change;
     take_change(view, begin, n, weights, change);
     for (int k = 0; k < n; ++k) change.x[k] = change.y[k] = 0.0;
+    change.farthest = 0.0;
     move_points(view, begin, n, input.alpha, change, report);
     if (report.lost < 0) bring_momentum(view, begin, n, weights);
   }

@@ -30,8 +30,8 @@ struct Gimp {
     d[0] = -a * inverse;
     d[2] = b * inverse;
     d[1] = -(d[0] + d[2]);
-    w[0] = -d[0] * (room - 0.5 * a);
-    w[2] = 0.5 * b * d[2];
+    w[0] = 0.5 * inverse * a * (2.0 * room - a);
+    w[2] = 0.5 * inverse * b * b;
     w[1] = 1.0 - w[0] - w[2];
   }
 };

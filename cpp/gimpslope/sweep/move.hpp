@@ -17,20 +17,29 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// What the nodes add to the places and velocities of the points of a block.
 struct Change {
   alignas(kCacheLine) double x[kBlock], y[kBlock], vx[kBlock], vy[kBlock];
+  double farthest;  // of the displacements along either axis, m
+  double all;       // sum of all sizes: NaN if any change is
 };
 
 /// Sum of S update (paper eq. 26).
 template <class Shape, class Real>
 void gather_change(const View<Real>& view, int n, const Weights<Shape, Need::values>& weights,
                    Change& change) {
-  for (int k = 0; k < n; ++k) {
-    const Quad sum = gather<Shape>(
-        view.grid.update + 4 * weights.first[k], view.grid.stride,
-        [&](int i) { return weights.value_x(i, k); }, [&](int j) { return weights.value_y(j, k); });
-    change.x[k] = sum[0];
-    change.y[k] = sum[1];
-    change.vx[k] = sum[2];
-    change.vy[k] = sum[3];
+  Quad farthest{}, all{};
+  gather_block<Shape>(view.grid.update, view.grid.stride, n, weights,
+                      [&](int k, const Quad(&sums)[4]) {
+                        const Quad x = size_of(sums[0]), y = size_of(sums[1]);
+                        farthest = larger(larger(x, y), farthest);
+                        all += (x + y) + (size_of(sums[2]) + size_of(sums[3]));
+                        quad(change.x + k) = sums[0];
+                        quad(change.y + k) = sums[1];
+                        quad(change.vx + k) = sums[2];
+                        quad(change.vy + k) = sums[3];
+                      });
+  change.farthest = change.all = 0.0;
+  for (int m = 0; m < 4; ++m) {
+    change.farthest = farthest[m] > change.farthest ? farthest[m] : change.farthest;
+    change.all += all[m];
   }
 }
 
@@ -51,17 +60,9 @@ inline int first_too_far(int n, double per_cell, const Change& change) {
 template <class Real>
 void move_points(const View<Real>& view, int begin, int n, double alpha, const Change& change,
                  Report& report) {
-  double largest = 0.0, sum = 0.0;  // the sum is NaN if any change is
-#pragma omp simd reduction(max : largest) reduction(+ : sum)
-  for (int k = 0; k < n; ++k) {
-    const double x = std::fabs(change.x[k]), y = std::fabs(change.y[k]);
-    const double farther = x > y ? x : y;
-    largest = farther > largest ? farther : largest;
-    sum += (x + y) + (change.vx[k] + change.vy[k]);
-  }
   const double per_cell = 1.0 / view.grid.cell;
-  const double travel = per_cell * largest;
-  if (!(travel <= kFarthestStep && std::fabs(sum) <= kHuge)) {
+  const double travel = per_cell * change.farthest;
+  if (!(travel <= kFarthestStep && change.all <= kHuge)) {
     report.lost = begin + first_too_far(n, per_cell, change);
     return;
   }

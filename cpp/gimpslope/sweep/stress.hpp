@@ -18,16 +18,13 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 template <class Shape, class Real>
 void gather_gradient(const View<Real>& view, int n, const Weights<Shape, Need::gradients>& weights,
                      Gradient& gradient) {
-  for (int k = 0; k < n; ++k) {
-    const Quad sum = gather<Shape>(
-        view.grid.velocity + 4 * weights.first[k], view.grid.stride,
-        [&](int i) { return twice(weights.pair_x(i, k)); },
-        [&](int j) { return twice(weights.pair_y(j, k)); });
-    gradient.vx_x[k] = sum[0];
-    gradient.vx_y[k] = sum[1];
-    gradient.vy_x[k] = sum[2];
-    gradient.vy_y[k] = sum[3];
-  }
+  gather_block<Shape>(view.grid.velocity, view.grid.stride, n, weights,
+                      [&](int k, const Quad(&sums)[4]) {
+                        quad(gradient.vx_x + k) = sums[0];
+                        quad(gradient.vx_y + k) = sums[1];
+                        quad(gradient.vy_x + k) = sums[2];
+                        quad(gradient.vy_y + k) = sums[3];
+                      });
 }
 
 /// F <- (I + L dt) F.
@@ -46,25 +43,34 @@ void update_deformation(const View<Real>& view, int begin, int n, const Gradient
   }
 }
 
-/// Strain increments, volumes, and the angle of the rotation.
+/// Strain increments, volumes, and the rotation, of a stable step by a tiny angle.
 template <class Real>
-void update_volume(const View<Real>& view, int begin, int n, double dt, const Gradient& l,
-                   Strains& s) {
+void strain(const View<Real>& view, int begin, int n, double dt, const Gradient& l, Strains& s) {
   const double factor = dt / view.grid.cell;
+  const bool linear = view.volume_update == VolumeUpdate::linear;
+  const double share = linear ? 1.0 : 0.0;
   Real* volume = view.points.volume + begin;
-#pragma omp simd
+  double turned = 0.0, strained = 0.0;
+#pragma omp simd reduction(max : turned, strained)
   for (int k = 0; k < n; ++k) {
-    s.xx[k] = factor * l.vx_x[k];
-    s.yy[k] = factor * l.vy_y[k];
-    s.xy[k] = 0.5 * factor * (l.vx_y[k] + l.vy_x[k]);
-    s.turn[k] = factor * (l.vy_x[k] - l.vx_y[k]);
+    const double xx = factor * l.vx_x[k], yy = factor * l.vy_y[k];
+    const double xy = 0.5 * factor * (l.vx_y[k] + l.vy_x[k]);
+    const double turn = factor * (l.vy_x[k] - l.vx_y[k]);
+    s.xx[k] = xx;
+    s.yy[k] = yy;
+    s.xy[k] = xy;
+    tiny_rotation(turn, s.cosine[k], s.sine[k]);
+    volume[k] *= 1.0 + share * (xx + yy);
+    const double angle = std::fabs(turn), size = std::fabs(xx) + std::fabs(yy) + std::fabs(xy);
+    turned = angle > turned ? angle : turned;
+    strained = size > strained ? size : strained;
   }
-  if (view.volume_update == VolumeUpdate::linear) {
-#pragma omp simd
-    for (int k = 0; k < n; ++k) volume[k] *= 1.0 + (s.xx[k] + s.yy[k]);
-  } else {
+  s.largest = strained;
+  if (turned > kTinyAngle)
+    for (int k = 0; k < n; ++k)
+      rotation(factor * (l.vy_x[k] - l.vx_y[k]), turned, s.cosine[k], s.sine[k]);
+  if (!linear)
     for (int k = 0; k < n; ++k) volume[k] *= std::exp(s.xx[k] + s.yy[k]);
-  }
 }
 
 /// Stress after the step: turned by the exact rotation, then the law (paper eq. 24-25).
@@ -98,7 +104,7 @@ void apply_law(const View<Real>& view, const Block& block, const Law& law, const
   const int begin = block.begin, n = block.end - block.begin;
   const DruckerPrager& plastic = law.drucker_prager;
   double& margin = view.margins[&block - view.blocks];
-  if (law.kind != LawKind::drucker_prager || !may_yield(plastic, n, strains, margin)) {
+  if (law.kind != LawKind::drucker_prager || !may_yield(plastic, strains, margin)) {
     update_stress(view, begin, n, plastic.elastic, strains);
     return;
   }
@@ -144,8 +150,7 @@ void deform_block(const View<Real>& view, const StepInput& input, const Block& b
   StressBefore before;
   if (view.ledger != nullptr) remember(view, begin, n, before);
   if (view.points.deformation[0] != nullptr) update_deformation(view, begin, n, gradient, input.dt);
-  update_volume(view, begin, n, input.dt, gradient, strains);
-  rotation(n, strains.turn, strains.cosine, strains.sine);
+  strain(view, begin, n, input.dt, gradient, strains);
   apply_law(view, block, law, strains);
   if (view.ledger != nullptr)
     add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);

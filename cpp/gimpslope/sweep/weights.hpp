@@ -1,6 +1,9 @@
 // The nodes of a block of points with their shape functions.
 #pragma once
 
+#include <cmath>
+
+#include "../tensor.hpp"
 #include "../view.hpp"
 #include "../wall.hpp"
 
@@ -10,7 +13,8 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 enum class Need { values, gradients };  // gradients: values and derivatives
 
 /// Shape functions of the points of a block along both axes, one array a node. Derivatives are
-/// times the cell size.
+/// times the cell size. The points are made up to a multiple of four: those that are not there have
+/// nodes of the last one, with weights of zero.
 template <class Shape, Need kNeed>
 struct Weights;
 
@@ -23,6 +27,22 @@ struct Weights<Shape, Need::values> {
   double value_y(int j, int k) const { return y[j][k]; }
   void set_x(int i, int k, double value, double /*derivative*/) { x[i][k] = value; }
   void set_y(int j, int k, double value, double /*derivative*/) { y[j][k] = value; }
+
+  /// Those along x of point k + m and along y, for m < 4: the first by shuffles and the second by
+  /// loads, for there are fewer of both than of either alone.
+  struct Four {
+    Quad along[Shape::nodes];
+    const double* up;
+    [[gnu::always_inline]] Quad x(int i, int m) const { return spread(along[i], m); }
+    [[gnu::always_inline]] double y(int j, int m) const { return up[j * kBlock + m]; }
+  };
+  [[gnu::always_inline]] Four four(int k) const {
+    Four w;
+    w.up = y[0] + k;
+#pragma GCC unroll 8
+    for (int i = 0; i < Shape::nodes; ++i) w.along[i] = quad(x[i] + k);
+    return w;
+  }
 };
 
 /// {derivative, value} along x and {value, derivative} along y, so that their products are those
@@ -43,6 +63,25 @@ struct Weights<Shape, Need::gradients> {
   void set_y(int j, int k, double value, double derivative) {
     y[j][2 * k] = value;
     y[j][2 * k + 1] = derivative;
+  }
+
+  /// Pairs of point k + m, for m < 4: those along y by shuffles, those along x by loads.
+  struct Four {
+    const double* along;
+    Quad up[Shape::nodes][2];
+    [[gnu::always_inline]] Quad x(int i, int m) const {
+      return twice(along + 2 * (i * kBlock + m));
+    }
+    [[gnu::always_inline]] Quad y(int j, int m) const { return spread_pair(up[j][m / 2], m % 2); }
+  };
+  [[gnu::always_inline]] Four four(int k) const {
+    Four w;
+    w.along = x[0] + 2 * k;
+#pragma GCC unroll 8
+    for (int j = 0; j < Shape::nodes; ++j)
+#pragma GCC unroll 8
+      for (int m = 0; m < 2; ++m) w.up[j][m] = quad(y[j] + 2 * k + 4 * m);
+    return w;
   }
 };
 
@@ -77,9 +116,9 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
       inverse_x = 1.0 / width_x;
       inverse_y = 1.0 / width_y;
     }
-    const double x = (px[k] - left) * per_cell - 0.5 * width_x - Shape::behind;
-    const double y = (py[k] - bottom) * per_cell - 0.5 * width_y - Shape::behind;
-    const double column = static_cast<int>(x), row = static_cast<int>(y);
+    const double x = px[k] * per_cell - (left * per_cell + 0.5 * width_x + Shape::behind);
+    const double y = py[k] * per_cell - (bottom * per_cell + 0.5 * width_y + Shape::behind);
+    const double column = std::trunc(x), row = std::trunc(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
     if constexpr (relative) out.first[k] += home[k];
 
@@ -98,6 +137,13 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
                       j + Shape::nodes - 2 == grid.wall[Side::top], w, d);
     }
     for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);
+  }
+  for (int k = n; k % 4 != 0; ++k) {
+    out.first[k] = out.first[n - 1];
+    for (int i = 0; i < Shape::nodes; ++i) {
+      out.set_x(i, k, 0.0, 0.0);
+      out.set_y(i, k, 0.0, 0.0);
+    }
   }
 }
 

@@ -21,19 +21,14 @@ constexpr double kNearlyYields = 1e-5;
 /// Strain increments and rotations of the points of a block.
 struct Strains {
   alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
-  double turn[kBlock], cosine[kBlock], sine[kBlock];  // of twice the angle
+  double cosine[kBlock], sine[kBlock];  // of twice the angle
+  double largest;                       // |xx| + |yy| + |xy|
 };
 
-/// Takes the strains of n points off the margin of their block; whether they may yield.
-inline bool may_yield(const DruckerPrager& law, int n, const Strains& s, double& margin) {
+/// Takes the strains of a block off its margin; whether its points may yield.
+inline bool may_yield(const DruckerPrager& law, const Strains& s, double& margin) {
   if (margin <= 0.0) return true;
-  double largest = 0.0;
-#pragma omp simd reduction(max : largest)
-  for (int k = 0; k < n; ++k) {
-    const double size = std::fabs(s.xx[k]) + std::fabs(s.yy[k]) + std::fabs(s.xy[k]);
-    largest = size > largest ? size : largest;
-  }
-  const double left = margin - law.per_strain * largest;
+  const double left = margin - law.per_strain * s.largest;
   margin = left > 0.0 ? left : kUnknown;
   return margin == kUnknown;
 }
