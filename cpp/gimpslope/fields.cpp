@@ -150,7 +150,8 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
                         name == "affine";
   require(settable, "field", name,
           "one of position, velocity, stress, volume, plastic_strain, body_force, affine");
-  check_values(values, static_cast<std::size_t>(field(name).components) * size(), name == "volume",
+  const int components = name == "body_force" ? 2 : field(name).components;  // room, if not refused
+  check_values(values, static_cast<std::size_t>(components) * size(), name == "volume",
                name.c_str());
   if (name == "position") grid_.check_reach(values);
   if (name == "plastic_strain") {

@@ -224,7 +224,8 @@ void Solver::prepare() {
       if (steps_ == 0) throw;
       fail(scattered.what(), -1);
     }
-    stable_at_sort_ = stable_time_step();
+    const bool fixed = method_.time_step.kind == TimeStep::Kind::fixed;
+    stable_at_sort_ = fixed ? stable_time_step() : std::numeric_limits<double>::infinity();
     reports_.resize(layout_.slabs.size());
     forget_margins();
     if (method_.ledger) ledger_rows_.resize(grid_.rows());

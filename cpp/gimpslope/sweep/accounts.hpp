@@ -31,10 +31,11 @@ inline void add_wall(const GridView& g, int column, int row, int component, bool
 struct NodeStep {
   double mass, inverse_mass;
   Pair internal, weight, body, damping;  // weight: of the gravity that acts
+  Pair acting;                           // internal + weight
   Pair full_weight;
   Pair raw, before, after;  // v-, v', v+
 
-  Pair total() const { return internal + weight + body + damping; }
+  Pair total() const { return acting + body + damping; }
 };
 
 /// What a step does at a node. With `stress_last` the internal forces do their work at the velocity

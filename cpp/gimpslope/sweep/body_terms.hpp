@@ -27,6 +27,7 @@ inline NodeStep step_of(const BodyNode& node) {
   s.inverse_mass = 1.0 / node.mass;
   s.internal = Pair(node.internal[0], node.internal[1]);
   s.weight = Pair(node.weight[0], node.weight[1]);
+  s.acting = s.internal + s.weight;
   s.body = Pair(node.body[0], node.body[1]);
   s.damping = Pair(node.damping[0], node.damping[1]);
   s.full_weight = Pair(node.full_weight[0], node.full_weight[1]);

@@ -25,7 +25,8 @@ void for_each_wall(const GridView& g, int column, int row, Pair& v, Visit visit)
 /// Calls inner(node) for the active nodes of a row that no wall touches, wall(node, column) for the
 /// others.
 template <class Inner, class AtWall>
-void for_each_node(const GridView& g, int row, Inner inner, AtWall wall) {
+[[gnu::always_inline]] inline void for_each_node(const GridView& g, int row, Inner inner,
+                                                 AtWall wall) {
   const NodeRange range = g.active[row];
   const bool whole = row <= g.wall[bottom] || row >= g.wall[top];
   const int after_left = g.wall[left] + 1;
@@ -63,8 +64,10 @@ inline void show_velocity(const GridView& g, int node, const Pair& v) {
 
 /// Velocity of the nodes of a row within the walls; begins the row's ledger where one is kept. Of a
 /// copy of the grid's view the compiler knows that no store to a node changes it.
-inline void start_nodes(const GridView& grid, int row, Ledger* ledger) {
-  const GridView g = grid;
+template <bool kPlain>
+void start_nodes(const GridView& grid, int row, Ledger* ledger) {
+  GridView g = grid;
+  if constexpr (kPlain) g.cells = nullptr;
   if (ledger != nullptr) *ledger = {};
   const auto set = [&](int node, const Pair& v) {
     show_velocity(g, node, v);
@@ -101,13 +104,15 @@ inline NodeStep forces_on(const GridView& g, int node, const StepInput& step) {
   s.raw = s.inverse_mass * pair(m + 2);
   s.before = Pair(shown[0], shown[2]);
   s.internal = Pair(f[0] + f[1], f[2] + f[3]);
-  s.weight = m[0] * Pair(step.gravity_x, step.gravity_y);
+  const Pair gravity(step.gravity_x, step.gravity_y);
+  s.acting = s.internal + m[0] * gravity;
+  s.weight = another(m[0]) * gravity;  // else the sum rounds by whether the weight is needed too
   s.full_weight = m[0] * Pair(step.full_gravity_x, step.full_gravity_y);
   s.body = Pair::Zero();
   if (g.body != nullptr) s.body = pair(g.body + 4 * node);
   s.damping = Pair::Zero();
   if (step.local_damping != 0.0)
-    s.damping = -step.local_damping * (s.internal + s.weight + s.body).abs() * s.before.sign();
+    s.damping = -step.local_damping * (s.acting + s.body).abs() * s.before.sign();
   return s;
 }
 
@@ -118,10 +123,14 @@ enum class Afterwards { none, shown, forces_kept };
 /// Momentum of the nodes of a row (paper eq. 13) with the walls' reactions, and what a point takes
 /// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass, momentum and forces,
 /// and adds to the row's ledger where one is kept.
-template <bool kLedger, Afterwards kAfterwards>
+template <bool kPlain, bool kLedger, Afterwards kAfterwards>
 void finish_nodes(const GridView& grid, int row, const StepInput& input, Ledger* ledger) {
-  const GridView g = grid;  // see start_nodes
-  const StepInput step = input;
+  GridView g = grid;  // see start_nodes
+  StepInput step = input;
+  if constexpr (kPlain) {
+    g.body = g.soil = nullptr;
+    step.local_damping = 0.0;
+  }
   const auto advance = [&](NodeStep& s) {
     s.after = s.raw + step.dt * s.inverse_mass * s.total();
   };
@@ -163,7 +172,11 @@ void finish_nodes(const GridView& grid, int row, const StepInput& input, Ledger*
 /// A row of nodes at the start of a step, with its ledger.
 template <class Real>
 void start_row(const View<Real>& view, int row) {
-  start_nodes(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
+  if (view.ledger == nullptr && view.grid.cells == nullptr) {
+    start_nodes<true>(view.grid, row, nullptr);
+  } else {
+    start_nodes<false>(view.grid, row, view.ledger != nullptr ? view.ledger + row : nullptr);
+  }
 }
 
 template <class Real>
@@ -174,9 +187,11 @@ void start_rows(const View<Real>& view, int thread) {
 template <Afterwards kAfterwards, class Real>
 void finish_row(const View<Real>& view, const StepInput& input, int row) {
   if (view.ledger != nullptr) {
-    finish_nodes<true, kAfterwards>(view.grid, row, input, view.ledger + row);
+    finish_nodes<false, true, kAfterwards>(view.grid, row, input, view.ledger + row);
+  } else if (view.grid.body != nullptr || view.grid.soil != nullptr || input.local_damping != 0.0) {
+    finish_nodes<false, false, kAfterwards>(view.grid, row, input, nullptr);
   } else {
-    finish_nodes<false, kAfterwards>(view.grid, row, input, nullptr);
+    finish_nodes<true, false, kAfterwards>(view.grid, row, input, nullptr);
   }
 }
 
