@@ -23,12 +23,13 @@ std::vector<Cell> first_cells(const Points& points, const Grid& grid, double beh
                               double half_length) {
   std::vector<Cell> cells(points.size);
   const bool own = !points.half_length.empty();
+  const double per_cell = 1.0 / grid.cell();
   for (int k = 0; k < points.size; ++k) {
     const double x = points.position[0][k], y = points.position[1][k];
     const double lx = own ? points.half_length[0][k] : half_length;
     const double ly = own ? points.half_length[1][k] : half_length;
-    cells[k] = {cell_at((x - lx - grid.x()) / grid.cell() - behind, x),
-                cell_at((y - ly - grid.y()) / grid.cell() - behind, y)};
+    cells[k] = {cell_at((x - lx - grid.x()) * per_cell - behind, x),
+                cell_at((y - ly - grid.y()) * per_cell - behind, y)};
   }
   return cells;
 }
@@ -42,18 +43,30 @@ void sort_by(std::vector<std::int32_t>& order, int keys, const std::vector<std::
   order.swap(sorted);
 }
 
-/// Parts the points of each cell, which follow each other in `order`, into fours, a pair and a
-/// single one: adds 0, 1 or 2 to three times the key of each point. Sorted by these, points that
-/// share their nodes come in runs of one length, and the processor foresees where a run ends.
-/// `same` may look at keys: those of a cell change once its end is found.
-template <class Same>
-void part_cells(const std::vector<std::int32_t>& order, std::vector<std::int32_t>& key, Same same) {
-  for (std::size_t begin = 0, end; begin < order.size(); begin = end) {
-    for (end = begin + 1; end < order.size() && same(order[begin], order[end]);) ++end;
-    const std::size_t fours = begin + (end - begin) / 4 * 4, pairs = begin + (end - begin) / 2 * 2;
-    for (std::size_t k = begin; k < end; ++k)
-      key[order[k]] = 3 * key[order[k]] + (k < fours ? 0 : (k < pairs ? 1 : 2));
+/// Parts the points of each cell into fours, a pair and a single one, and brings the fours of a row
+/// before its pairs and these before the single ones: points that share their nodes come in runs of
+/// one length, and the processor foresees where a run ends.
+template <class SameRow, class SameCell>
+void part_cells(std::vector<std::int32_t>& order, SameRow same_row, SameCell same_cell) {
+  std::vector<std::int32_t> parted, pairs, singles;
+  parted.reserve(order.size());
+  for (std::size_t row = 0, k = 0; row < order.size(); row = k) {
+    pairs.clear();
+    singles.clear();
+    while (k < order.size() && same_row(order[row], order[k])) {
+      std::size_t end = k + 1;
+      while (end < order.size() && same_cell(order[k], order[end])) ++end;
+      for (; end - k >= 4; k += 4) parted.insert(parted.end(), &order[k], &order[k] + 4);
+      if (end - k >= 2) {
+        pairs.insert(pairs.end(), &order[k], &order[k] + 2);
+        k += 2;
+      }
+      if (k < end) singles.push_back(order[k++]);
+    }
+    parted.insert(parted.end(), pairs.begin(), pairs.end());
+    parted.insert(parted.end(), singles.begin(), singles.end());
   }
+  order.swap(parted);
 }
 
 /// Makes the nodes active that points in these cells can reach before the next sort.
@@ -132,10 +145,12 @@ Layout arrange(Points& points, Grid& grid, const ShapeTraits& shape, double half
     key[k] = (slab * materials + points.material[k]) * rows + row % rows;
   }
   sort_by(order, slabs * materials * rows, key);
-  part_cells(order, key, [&](std::int32_t a, std::int32_t b) {
-    return cells[a].column == cells[b].column && key[a] == key[b];
+  const auto same_row = [&](std::int32_t a, std::int32_t b) {
+    return key[a] == key[b];
+  };
+  part_cells(order, same_row, [&](std::int32_t a, std::int32_t b) {
+    return cells[a].column == cells[b].column && same_row(a, b);
   });
-  sort_by(order, 3 * slabs * materials * rows, key);
 
   // Blocks begin on cache lines where they can, which full ones of kBlock points do.
   constexpr int kLine = kCacheLine / sizeof(double);

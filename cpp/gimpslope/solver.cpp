@@ -135,7 +135,7 @@ void Solver::choose_kernel() {
 
 void Solver::advance(std::int64_t steps) {
   require(steps >= 0, "steps", steps, "zero or positive");
-  forget_margins();
+  forget_known();
   for (std::int64_t k = 0; k < steps; ++k) {
     const double dt = time_step();
     step(dt, dt);
@@ -145,7 +145,7 @@ void Solver::advance(std::int64_t steps) {
 
 bool Solver::advance_to(double time, std::int64_t most) {
   require(std::isfinite(time), "time", time, "finite, in s");
-  forget_margins();
+  forget_known();
   constexpr double rounding = 1e-6;  // of a step
   for (std::int64_t k = 0; time_ < time; ++k) {
     const double dt = time_step(), left = time - time_;
@@ -175,9 +175,9 @@ bool Solver::advance_through(std::span<const double> times, std::int64_t most,
   return true;
 }
 
-/// How far blocks are from yield is not known any more: there are others, or stresses and materials
+/// What was known of blocks is not any more: there are others, or stresses, volumes and materials
 /// may have been set.
-void Solver::forget_margins() { margins_.assign(layout_.blocks.size(), 0.0); }
+void Solver::forget_known() { known_.assign(layout_.blocks.size(), {}); }
 
 /// Calls act(kernel, view) for the precision in which the points are stepped.
 template <class Act>
@@ -194,7 +194,7 @@ View<Real> Solver::view_of(const PointsView<Real>& points) {
   return {points,
           grid_.view(),
           layout_.blocks.data(),
-          margins_.data(),
+          known_.data(),
           gradients_.data(),
           layout_.slabs.data(),
           static_cast<int>(layout_.slabs.size()),
@@ -227,7 +227,7 @@ void Solver::prepare() {
     const bool fixed = method_.time_step.kind == TimeStep::Kind::fixed;
     stable_at_sort_ = fixed ? stable_time_step() : std::numeric_limits<double>::infinity();
     reports_.resize(layout_.slabs.size());
-    forget_margins();
+    forget_known();
     if (method_.ledger) ledger_rows_.resize(grid_.rows());
     if (grid_.view().cells != nullptr) gradients_.resize(layout_.blocks.size());
     if (!bodies_.empty()) {
@@ -429,7 +429,7 @@ int Solver::fastest_point() const {
 
 std::int64_t Solver::bytes() const {
   return points_.bytes() + bodies_.bytes() + (single_ ? single_->bytes() : 0) + grid_.bytes() +
-         layout_.blocks.capacity() * (sizeof(Block) + sizeof(double)) +
+         layout_.blocks.capacity() * (sizeof(Block) + sizeof(Known)) +
          gradients_.capacity() * sizeof(Gradient);
 }
 

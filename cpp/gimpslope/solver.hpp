@@ -119,7 +119,7 @@ class Solver {
   Points& points();
   const Points& points() const;
   Bodies bodies_of(const InitialPoints& given) const;
-  void forget_margins();
+  void forget_known();
   void prepare();
   void step(double dt, double whole, bool wants_energies = false);
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
@@ -151,8 +151,8 @@ class Solver {
   Bodies bodies_;
   BodiesView bodies_view_{};
   Layout layout_;
-  std::vector<double> margins_;  // of each block, see sweep/yielding.hpp
-  Buffer<Gradient> gradients_;   // of each block, where volume strains are averaged
+  std::vector<Known> known_;    // of each block
+  Buffer<Gradient> gradients_;  // of each block, where volume strains are averaged
   Basis basis_;
   Kernel<double> kernel_{};
   Kernel<float> single_kernel_{};

@@ -170,6 +170,14 @@ struct BodiesView {
   double* contacts_unsettled;  // largest change of a speed in the last sweep, m/s
 };
 
+/// What is known of the points of a block, so that not all need be looked at in each step; zeros
+/// where it is not.
+struct Known {
+  double margin = 0.0;       // from yield, see sweep/yielding.hpp
+  double most_volume = 0.0;  // after the last strain, m2
+  double least_mass = 0.0;   // kg/m
+};
+
 /// h times the velocity gradient of the points of a block.
 struct Gradient {
   alignas(kCacheLine) double vx_x[kBlock], vx_y[kBlock], vy_x[kBlock], vy_y[kBlock];
@@ -182,7 +190,7 @@ struct View {
   PointsView<Real> points;
   GridView grid;
   const Block* blocks;
-  double* margins;      // of each block, see sweep/yielding.hpp
+  Known* known;         // of each block
   Gradient* gradients;  // of each block, null unless volume strains are averaged
   const Slab* slabs;
   int slab_count;

@@ -61,7 +61,7 @@ void settle_block(const View<Real>& view, const StepInput& input, const Block& b
   if (view.domain_update != DomainUpdate::none) resize_domains(view, begin, n, report);
   if (report.lost >= 0) return;
   bring_block<Shape, kOwnDomain>(view, begin, n, weights);
-  if (input.wants_speeds) add_speeds(view, block, report.speeds);
+  if (input.wants_speeds) add_wave_speed(view, block, report.speeds);
   if constexpr (!PointsView<Real>::relative)
     if (input.wants_energies)
       add_energy_of_motion(view, block, input.full_gravity_x, input.full_gravity_y,

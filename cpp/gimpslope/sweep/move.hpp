@@ -72,13 +72,18 @@ void move_points(const View<Real>& view, int begin, int n, double alpha, const C
   const double keep = 1.0 - alpha;
   if (view.ledger != nullptr)
     report.ledger.transfer -= kinetic_gain(p, begin, n, keep, change.vx, change.vy);
-#pragma omp simd
+  double fastest = report.speeds.point;
+#pragma omp simd reduction(max : fastest)
   for (int k = 0; k < n; ++k) {
     px[k] += change.x[k];
     py[k] += change.y[k];
     vx[k] = keep * vx[k] + change.vx[k];
     vy[k] = keep * vy[k] + change.vy[k];
+    const double x = vx[k], y = vy[k];
+    const double square = x * x + y * y;
+    fastest = square > fastest ? square : fastest;
   }
+  report.speeds.point = fastest;
 }
 
 /// How the half-lengths of a block changed along one axis.

@@ -18,27 +18,40 @@ double largest_specific_volume(int n, const Real* volume, const Real* mass) {
   return largest;
 }
 
-/// Squared point and wave speeds, c^2 = (K + 4G/3) V / m, of a block. A block that cannot hold the
-/// largest wave speed is spared its divisions.
+template <class Real>
+double least_of(int n, const Real* values) {
+  double least = values[0];
+#pragma omp simd reduction(min : least)
+  for (int k = 0; k < n; ++k) least = values[k] < least ? values[k] : least;
+  return least;
+}
+
+/// Squared wave speed, c^2 = (K + 4G/3) V / m, of a block that this step has strained. One that
+/// cannot hold the largest is spared its divisions.
+template <class Real>
+void add_wave_speed(const View<Real>& view, const Block& block, Speeds& largest) {
+  const int begin = block.begin, n = block.end - block.begin;
+  const Real *volume = view.points.volume + begin, *mass = view.points.mass + begin;
+  const double modulus = view.laws[block.material].wave_modulus;
+  Known& known = view.known[&block - view.blocks];
+  if (known.least_mass == 0.0) known.least_mass = least_of(n, mass);
+  if (modulus * known.most_volume <= largest.wave * known.least_mass) return;
+  const double wave = modulus * largest_specific_volume(n, volume, mass);
+  largest.wave = wave > largest.wave ? wave : largest.wave;
+}
+
+/// Squared point and wave speeds of a block of which nothing need be known.
 template <class Real>
 void add_speeds(const View<Real>& view, const Block& block, Speeds& largest) {
   const PointsView<Real>& p = view.points;
   const int begin = block.begin, n = block.end - block.begin;
-  const Real *vx = p.vx + begin, *vy = p.vy + begin;
-  const Real *volume = p.volume + begin, *mass = p.mass + begin;
-  double point = 0.0, most = 0.0, least = mass[0];
-#pragma omp simd reduction(max : point, most) reduction(min : least)
-  for (int k = 0; k < n; ++k) {
-    const double x = vx[k], y = vy[k];
+  for (int k = begin; k < block.end; ++k) {
+    const double x = p.vx[k], y = p.vy[k];
     const double square = x * x + y * y;
-    point = square > point ? square : point;
-    most = volume[k] > most ? volume[k] : most;
-    least = mass[k] < least ? mass[k] : least;
+    largest.point = square > largest.point ? square : largest.point;
   }
-  largest.point = point > largest.point ? point : largest.point;
-  const double modulus = view.laws[block.material].wave_modulus;
-  if (modulus * (most / least) <= largest.wave) return;
-  const double wave = modulus * largest_specific_volume(n, volume, mass);
+  const double wave = view.laws[block.material].wave_modulus *
+                      largest_specific_volume(n, p.volume + begin, p.mass + begin);
   largest.wave = wave > largest.wave ? wave : largest.wave;
 }
 

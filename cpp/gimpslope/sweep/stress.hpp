@@ -50,8 +50,8 @@ void strain(const View<Real>& view, int begin, int n, double dt, const Gradient&
   const bool linear = view.volume_update == VolumeUpdate::linear;
   const double share = linear ? 1.0 : 0.0;
   Real* volume = view.points.volume + begin;
-  double turned = 0.0, strained = 0.0;
-#pragma omp simd reduction(max : turned, strained)
+  double turned = 0.0, strained = 0.0, most = 0.0;
+#pragma omp simd reduction(max : turned, strained, most)
   for (int k = 0; k < n; ++k) {
     const double xx = factor * l.vx_x[k], yy = factor * l.vy_y[k];
     const double xy = 0.5 * factor * (l.vx_y[k] + l.vy_x[k]);
@@ -61,16 +61,21 @@ void strain(const View<Real>& view, int begin, int n, double dt, const Gradient&
     s.xy[k] = xy;
     tiny_rotation(turn, s.cosine[k], s.sine[k]);
     volume[k] *= 1.0 + share * (xx + yy);
+    most = volume[k] > most ? volume[k] : most;
     const double angle = std::fabs(turn), size = std::fabs(xx) + std::fabs(yy) + std::fabs(xy);
     turned = angle > turned ? angle : turned;
     strained = size > strained ? size : strained;
   }
   s.largest = strained;
+  s.most_volume = most;
   if (turned > kTinyAngle)
     for (int k = 0; k < n; ++k)
       rotation(factor * (l.vy_x[k] - l.vx_y[k]), turned, s.cosine[k], s.sine[k]);
   if (!linear)
-    for (int k = 0; k < n; ++k) volume[k] *= std::exp(s.xx[k] + s.yy[k]);
+    for (int k = 0; k < n; ++k) {
+      volume[k] *= std::exp(s.xx[k] + s.yy[k]);
+      s.most_volume = volume[k] > s.most_volume ? volume[k] : s.most_volume;
+    }
 }
 
 /// Stress after the step: turned by the exact rotation, then the law (paper eq. 24-25).
@@ -103,7 +108,7 @@ template <class Real>
 void apply_law(const View<Real>& view, const Block& block, const Law& law, const Strains& strains) {
   const int begin = block.begin, n = block.end - block.begin;
   const DruckerPrager& plastic = law.drucker_prager;
-  double& margin = view.margins[&block - view.blocks];
+  double& margin = view.known[&block - view.blocks].margin;
   if (law.kind != LawKind::drucker_prager || !may_yield(plastic, strains, margin)) {
     update_stress(view, begin, n, plastic.elastic, strains);
     return;
@@ -151,6 +156,7 @@ void deform_block(const View<Real>& view, const StepInput& input, const Block& b
   if (view.ledger != nullptr) remember(view, begin, n, before);
   if (view.points.deformation[0] != nullptr) update_deformation(view, begin, n, gradient, input.dt);
   strain(view, begin, n, input.dt, gradient, strains);
+  view.known[&block - view.blocks].most_volume = strains.most_volume;
   apply_law(view, block, law, strains);
   if (view.ledger != nullptr)
     add_stress_work(view, begin, n, law.drucker_prager.elastic, strains, before, ledger);

@@ -22,7 +22,8 @@ constexpr double kNearlyYields = 1e-5;
 struct Strains {
   alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
   double cosine[kBlock], sine[kBlock];  // of twice the angle
-  double largest;                       // |xx| + |yy| + |xy|
+  double most_volume;
+  double largest;  // |xx| + |yy| + |xy|
 };
 
 /// Takes the strains of a block off its margin; whether its points may yield.
