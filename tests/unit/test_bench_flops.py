@@ -37,32 +37,34 @@ def numbers(count: int) -> list[Number]:
 
 
 def linear() -> tuple[list[Number], list[Number]]:
-    x, left, per_cell, column = numbers(4)
-    xi = (x - left) * per_cell - column
+    x, per_cell, origin, column = numbers(4)
+    xi = x * per_cell - origin - column
     return [1 - xi, xi], numbers(2)
 
 
-def gimp(width: Number, half: Number, inverse: Number) -> tuple[list[Number], Callable[[], object]]:
-    """Values, and the derivative that they do not hold already."""
-    x, left, per_cell, column = numbers(4)
-    xi = (x - left) * per_cell - half - column
+def gimp(
+    width: Number, origin: Number, inverse: Number, half_inverse: Number
+) -> tuple[list[Number], Callable[[], object]]:
+    """Values, and what derivatives take besides."""
+    x, per_cell, column = numbers(3)
+    xi = x * per_cell - origin - column
     room = 1 - xi
     a = room.smaller(width)
     b = width - a
-    d0, d2 = -a * inverse, b * inverse
-    w0 = -d0 * (room - 0.5 * a)
-    w2 = 0.5 * b * d2
-    return [w0, 1 - w0 - w2, w2], lambda: -(d0 + d2)
+    w0 = half_inverse * a * (2 * room - a)
+    w2 = half_inverse * b * b
+    return [w0, 1 - w0 - w2, w2], lambda: -(-a * inverse + b * inverse)
 
 
 def ugimp() -> tuple[list[Number], Callable[[], object]]:
-    return gimp(*numbers(3))
+    return gimp(*numbers(4))
 
 
 def cpgimp() -> tuple[list[Number], Callable[[], object]]:
-    half_length, two_per_cell = numbers(2)
+    half_length, two_per_cell, left = numbers(3)
     width = half_length * two_per_cell
-    return gimp(width, 0.5 * width, 1 / width)
+    inverse = 1 / width
+    return gimp(width, left + 0.5 * width, inverse, 0.5 * inverse)
 
 
 def gather(nodes: int) -> None:

@@ -20,15 +20,14 @@ NODES = MappingProxyType({"linear": 2, "ugimp": 3, "cpgimp": 3})
 
 _POINTS_PER_NODE = 4  # as many as a cell has
 
-# Along one axis: the place in cells from the first node, (x - x0) / h, its fraction, and with a
-# domain its left edge.
-_PLACE = {"linear": 3, "ugimp": 4, "cpgimp": 4}
-# Of a domain that is the point's own: 2 l / h, its half and its inverse.
-_OWN_DOMAIN = {"linear": 0, "ugimp": 0, "cpgimp": 3}
-# Linear: 1 - xi. GIMP: 1 - xi, a, b; a / width, b / width, w0 (3), w2 (2), w1 (2).
-_VALUES = {"linear": 1, "ugimp": 12, "cpgimp": 12}
-# GIMP: the middle one, for the outer ones are in the values.
-_DERIVATIVES = {"linear": 0, "ugimp": 1, "cpgimp": 1}
+# Along one axis: the place in cells of the point or its left edge, x / h - c, and its fraction.
+_PLACE = {"linear": 3, "ugimp": 3, "cpgimp": 3}
+# Of a domain that is the point's own: 2 l / h, its half, which c takes up, its inverse, half of that.
+_OWN_DOMAIN = {"linear": 0, "ugimp": 0, "cpgimp": 5}
+# Linear: 1 - xi. GIMP: 1 - xi, a, b; w0 (4), w2 (2), w1 (2).
+_VALUES = {"linear": 1, "ugimp": 11, "cpgimp": 11}
+# GIMP: a / width, b / width and the middle one.
+_DERIVATIVES = {"linear": 0, "ugimp": 3, "cpgimp": 3}
 
 _STRAIN = 6  # dt L_xx, dt L_yy, dt (L_xy + L_yx) / 2 (2), dt (L_yx - L_xy) (2)
 _VOLUME = 3  # V (1 + (e_xx + e_yy))
