@@ -144,8 +144,13 @@ void Solver::advance(std::int64_t steps) {
 }
 
 bool Solver::advance_to(double time, std::int64_t most) {
-  require(std::isfinite(time), "time", time, "finite, in s");
   forget_known();
+  return go_on_to(time, most);
+}
+
+/// The same where nothing can have been set since the last step.
+bool Solver::go_on_to(double time, std::int64_t most) {
+  require(std::isfinite(time), "time", time, "finite, in s");
   constexpr double rounding = 1e-6;  // of a step
   for (std::int64_t k = 0; time_ < time; ++k) {
     const double dt = time_step(), left = time - time_;
@@ -167,9 +172,10 @@ bool Solver::advance_to(double time, std::int64_t most) {
 bool Solver::advance_through(std::span<const double> times, std::int64_t most,
                              std::vector<Row>& rows) {
   const std::int64_t last = steps_ + most;
+  forget_known();
   for (const double time : times) {
     if (time <= time_) continue;
-    if (!advance_to(time, last - steps_)) return false;
+    if (!go_on_to(time, last - steps_)) return false;
     rows.push_back({time_, steps_, energies(), ledger_, bodies_.states()});
   }
   return true;

@@ -120,6 +120,7 @@ class Solver {
   const Points& points() const;
   Bodies bodies_of(const InitialPoints& given) const;
   void forget_known();
+  bool go_on_to(double time, std::int64_t most);
   void prepare();
   void step(double dt, double whole, bool wants_energies = false);
   [[noreturn]] void fail(const std::string& what, std::int64_t point);

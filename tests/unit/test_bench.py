@@ -16,6 +16,7 @@ from gimpslope.studies import bench, plain_data
 from gimpslope.studies.bench import (
     Case,
     Plan,
+    flops,
     guard,
     in_turn,
     machine,
@@ -281,7 +282,8 @@ def test_table_has_a_line_a_measurement() -> None:
 
 def test_text_says_everything() -> None:
     shown = report.text(results())
-    for text in ("52", "104", "110", "L2 256 KiB", "ugimp 507", "12.3 %", "1.5e-07", "3.5e-07"):
+    operations = f"ugimp {flops.per_point_step('ugimp'):.0f}"
+    for text in ("52", "104", "110", "L2 256 KiB", operations, "12.3 %", "1.5e-07", "3.5e-07"):
         assert text in shown
     assert "extrapolated" in shown and "9.8 min on 1 thread, 5.0 min on 2 threads" in shown
     assert "4 slopes on 2 cores 19.6 min, 2 at a time" in shown
