@@ -68,7 +68,7 @@ class Method(Record):
         "cell_average", with the mean stress in the forces to match: the mean dilatation of B-bar
         (Hughes 1980), against locking where the volume hardly changes, as in soil that flows. Not
         for large elastic motions: a point that crosses into another cell meets another mean stress.
-        The mean is over all deformable materials in the cell; a step takes 1.55 times as long.
+        The mean is over all deformable materials in the cell; a step takes 1.6 times as long.
         None: "cell_average" where any material of the scene yields, else "point"; `gimpslope
         tradeoff` shows that this pays
     precision : in which the points are stepped: "double", or "single", where places count from a
