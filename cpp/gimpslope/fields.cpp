@@ -150,7 +150,8 @@ void Solver::set_values(const std::string& name, std::span<const double> values)
                         name == "affine";
   require(settable, "field", name,
           "one of position, velocity, stress, volume, plastic_strain, body_force, affine");
-  const int components = name == "body_force" ? 2 : field(name).components;  // room, if not refused
+  const int components =
+      name == "body_force" ? 2 : field(name).components;  // before room is made for them
   check_values(values, static_cast<std::size_t>(components) * size(), name == "volume",
                name.c_str());
   if (name == "position") grid_.check_reach(values);

@@ -148,7 +148,7 @@ bool Solver::advance_to(double time, std::int64_t most) {
   return go_on_to(time, most);
 }
 
-/// The same where nothing can have been set since the last step.
+/// `advance_to` while what is known of the blocks still holds.
 bool Solver::go_on_to(double time, std::int64_t most) {
   require(std::isfinite(time), "time", time, "finite, in s");
   constexpr double rounding = 1e-6;  // of a step
@@ -230,8 +230,7 @@ void Solver::prepare() {
       if (steps_ == 0) throw;
       fail(scattered.what(), -1);
     }
-    const bool fixed = method_.time_step.kind == TimeStep::Kind::fixed;
-    stable_at_sort_ = fixed ? stable_time_step() : std::numeric_limits<double>::infinity();
+    stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
     forget_known();
     if (method_.ledger) ledger_rows_.resize(grid_.rows());

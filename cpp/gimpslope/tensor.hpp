@@ -84,7 +84,7 @@ inline Quad twice(const double* pair) {
   return reinterpret_cast<Quad>(reinterpret_cast<Bits>(q) & 0x7fff'ffff'ffff'ffff);
 }
 
-/// The larger elements; those of b where one of a is NaN.
+/// The larger elements; those of b where either is NaN.
 [[gnu::always_inline]] inline Quad larger(Quad a, Quad b) { return a > b ? a : b; }
 
 /// Two doubles: a vector in the plane.
@@ -100,6 +100,8 @@ inline Eigen::Map<const Pair, Eigen::Aligned16> pair(const double* two) {
   asm("" : "+x"(x));
 #elif defined(__aarch64__)
   asm("" : "+w"(x));
+#else
+  asm("" : "+m"(x));
 #endif
   return x;
 }

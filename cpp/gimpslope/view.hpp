@@ -174,7 +174,7 @@ struct BodiesView {
 /// where it is not.
 struct Known {
   double margin = 0.0;       // from yield, see sweep/yielding.hpp
-  double most_volume = 0.0;  // after the last strain, m2
+  double most_volume = 0.0;  // at least the largest after the last strain, m2
   double least_mass = 0.0;   // kg/m
 };
 

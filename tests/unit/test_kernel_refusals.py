@@ -237,6 +237,15 @@ def test_refused_settings_leave_the_old_ones() -> None:
     np.testing.assert_array_equal(stepped.get("position"), untouched.get("position"))
 
 
+def test_body_forces_of_zero_change_nothing() -> None:
+    """Nodes with and without body forces are stepped by different instances of one loop."""
+    free, given = solver(SCENE), solver(SCENE)
+    given.set("body_force", np.zeros((N, 2)))
+    for each in (free, given):
+        each.advance(20)
+    np.testing.assert_array_equal(free.get("position"), given.get("position"))
+
+
 def test_stiffer_materials_need_a_smaller_step() -> None:
     stepped, untouched = (solver(SCENE, time_step=("fixed", 0.9 * STABLE)) for _ in range(2))
     stiff = [_core.Material(**(SOIL | {"young": 1e8}))]

@@ -55,8 +55,8 @@ inline int first_too_far(int n, double per_cell, const Change& change) {
   return n - 1;
 }
 
-/// New places, and velocities (1 - alpha) v + change. The points of a block move together or, if
-/// one of them would go too far, not at all.
+/// New places, and velocities (1 - alpha) v + change, the largest of which is reported. The points
+/// of a block move together or, if one of them would go too far, not at all.
 template <class Real>
 void move_points(const View<Real>& view, int begin, int n, double alpha, const Change& change,
                  Report& report) {

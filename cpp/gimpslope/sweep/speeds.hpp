@@ -27,7 +27,7 @@ double least_of(int n, const Real* values) {
 }
 
 /// Squared wave speed, c^2 = (K + 4G/3) V / m, of a block that this step has strained. One that
-/// cannot hold the largest is spared its divisions.
+/// cannot hold the largest, but for rounding, is spared its divisions.
 template <class Real>
 void add_wave_speed(const View<Real>& view, const Block& block, Speeds& largest) {
   const int begin = block.begin, n = block.end - block.begin;

@@ -43,7 +43,8 @@ void update_deformation(const View<Real>& view, int begin, int n, const Gradient
   }
 }
 
-/// Strain increments, volumes, and the rotation, of a stable step by a tiny angle.
+/// Strain increments, volumes and rotations. The loop takes all angles for tiny, as those of stable
+/// steps are; larger ones are done again.
 template <class Real>
 void strain(const View<Real>& view, int begin, int n, double dt, const Gradient& l, Strains& s) {
   const double factor = dt / view.grid.cell;

@@ -28,8 +28,8 @@ struct Weights<Shape, Need::values> {
   void set_x(int i, int k, double value, double /*derivative*/) { x[i][k] = value; }
   void set_y(int j, int k, double value, double /*derivative*/) { y[j][k] = value; }
 
-  /// Those along x of point k + m and along y, for m < 4: the first by shuffles and the second by
-  /// loads, for there are fewer of both than of either alone.
+  /// Weights of points k to k + 3: those along x come by shuffles, those along y by loads, to keep
+  /// both units of the processor busy.
   struct Four {
     Quad along[Shape::nodes];
     const double* up;
@@ -65,7 +65,7 @@ struct Weights<Shape, Need::gradients> {
     y[j][2 * k + 1] = derivative;
   }
 
-  /// Pairs of point k + m, for m < 4: those along y by shuffles, those along x by loads.
+  /// Pairs of points k to k + 3, along x by loads and along y by shuffles.
   struct Four {
     const double* along;
     Quad up[Shape::nodes][2];
@@ -101,8 +101,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
   const double per_cell = 1.0 / grid.cell;
   constexpr bool relative = PointsView<Real>::relative;
   const std::int32_t* home = relative ? view.points.home + begin : nullptr;
-  const double left = relative ? 0.0 : grid.left;
-  const double bottom = relative ? 0.0 : grid.bottom;
+  const double origin_x = (relative ? 0.0 : grid.left * per_cell) + Shape::behind;
+  const double origin_y = (relative ? 0.0 : grid.bottom * per_cell) + Shape::behind;
   const double stride = grid.stride;
   const double common = Shape::widest > 0.0 ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::widest > 0.0 ? 1.0 / common : 0.0;
@@ -116,8 +116,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
       inverse_x = 1.0 / width_x;
       inverse_y = 1.0 / width_y;
     }
-    const double x = px[k] * per_cell - (left * per_cell + 0.5 * width_x + Shape::behind);
-    const double y = py[k] * per_cell - (bottom * per_cell + 0.5 * width_y + Shape::behind);
+    const double x = px[k] * per_cell - (origin_x + 0.5 * width_x);
+    const double y = py[k] * per_cell - (origin_y + 0.5 * width_y);
     const double column = std::trunc(x), row = std::trunc(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
     if constexpr (relative) out.first[k] += home[k];

@@ -22,8 +22,8 @@ constexpr double kNearlyYields = 1e-5;
 struct Strains {
   alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
   double cosine[kBlock], sine[kBlock];  // of twice the angle
-  double most_volume;
-  double largest;  // |xx| + |yy| + |xy|
+  double most_volume;                   // of the points after them, at least, m2
+  double largest;                       // |xx| + |yy| + |xy| of a point
 };
 
 /// Takes the strains of a block off its margin; whether its points may yield.
