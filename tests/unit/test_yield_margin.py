@@ -24,6 +24,19 @@ def test_the_bits_are_those_of_a_run_that_asks_every_point_in_every_step(
         np.testing.assert_array_equal(getattr(bounded, field), getattr(asked, field), field)
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_rows_within_one_call_have_the_bits_of_a_call_each(precision: str) -> None:
+    case = Case(points=3000, stones=0.4, precision=precision)
+    together, apart = case.solver(), case.solver()
+    times = np.linspace(0.0, 0.1, 41)[1:]
+    together.advance_through(times)
+    for time in times:
+        apart.advance_to(time)
+    assert together.steps == apart.steps > 2 * len(times)
+    for field in FIELDS:
+        np.testing.assert_array_equal(getattr(together, field), getattr(apart, field), field)
+
+
 def test_its_stones_begin_to_yield_one_after_the_other() -> None:
     solver = Case(points=3000, stones=0.4).solver()
     stones = solver.material == 1
