@@ -84,13 +84,17 @@ class Recorder:
             self._end(kind, error)
 
     def _end(self, kind: type[BaseException] | None, error: BaseException | None) -> None:
+        self._keep(self._solver.take_rows())
+        torn = isinstance(error, Diverged) or isinstance(
+            getattr(error, "__context__", None), Diverged
+        )
         if kind is None:
             self._finish("finished", self.detail)
         elif issubclass(kind, KeyboardInterrupt):
             where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
-            self._finish("interrupted", f"stopped by Ctrl-C or SIGTERM {where}")
+            self._finish("interrupted", f"stopped by Ctrl-C or SIGTERM {where}", sound=not torn)
         else:
-            self._finish("failed", f"{kind.__name__}: {error}", sound=kind is not Diverged)
+            self._finish("failed", f"{kind.__name__}: {error}", sound=not torn)
 
     def start(self, stage: str, duration: float) -> None:
         """Begin the rows and the bar of a stage that lasts at most `duration` seconds."""
@@ -117,12 +121,13 @@ class Recorder:
         try:
             self._solver.advance_through(self._due(until, rows or self._batch))
         finally:
-            spent = clock.perf_counter() - start
-            self._seconds += spent
-            self._processor_seconds += clock.process_time() - processor_start
-            self._steps += self._solver.steps - steps
-            columns = self._solver.take_rows()
-            self._keep(columns)
+            with uninterrupted():  # rows that are taken but not kept would be lost
+                spent = clock.perf_counter() - start
+                self._seconds += spent
+                self._processor_seconds += clock.process_time() - processor_start
+                self._steps += self._solver.steps - steps
+                columns = self._solver.take_rows()
+                self._keep(columns)
         if spent < _MOMENT:
             self._batch = min(2 * self._batch, _LARGEST_BATCH)
         elif spent > 4 * _MOMENT:

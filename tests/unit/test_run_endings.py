@@ -105,6 +105,32 @@ def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
     assert len(run.energy) == 1 and run.times.tolist() == [0.0]
 
 
+@pytest.mark.parametrize("taken", [True, False])
+def test_no_row_is_lost_on_its_way_to_the_file(
+    taken: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C the moment the kernel has handed its rows over, or the moment before."""
+    take, moments = gs.Solver.take_rows, iter(range(100))
+
+    def interrupted(solver: gs.Solver) -> dict[str, Any]:
+        now = next(moments) == 3
+        if now and not taken:
+            raise KeyboardInterrupt
+        rows = take(solver)
+        if now:
+            assert len(rows["time"]) > 1
+            signal.raise_signal(signal.SIGINT)
+        return rows
+
+    monkeypatch.setattr(gs.Solver, "take_rows", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        simulate(tmp_path / "run.h5")
+    run = gs.open(tmp_path / "run.h5")
+    rows = run.energy.stage("gravity")
+    assert run.status == "interrupted" and len(rows) > 8
+    check_rows_without_gap(run)
+
+
 SLOW = """
 cell = 0.2
 [outline]
