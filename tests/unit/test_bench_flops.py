@@ -38,8 +38,8 @@ def numbers(count: int) -> list[Number]:
 
 def linear() -> tuple[list[Number], list[Number]]:
     x, per_cell, origin, column = numbers(4)
-    xi = x * per_cell - origin - column
-    return [1 - xi, xi], numbers(2)
+    room = column - (x * per_cell - origin)
+    return [room, 1 - room], numbers(2)
 
 
 def gimp(
@@ -47,13 +47,12 @@ def gimp(
 ) -> tuple[list[Number], Callable[[], object]]:
     """Values, and what derivatives take besides."""
     x, per_cell, column = numbers(3)
-    xi = x * per_cell - origin - column
-    room = 1 - xi
+    room = column - (x * per_cell - origin)
     a = room.smaller(width)
     b = width - a
-    w0 = half_inverse * a * (2 * room - a)
-    w2 = half_inverse * b * b
-    return [w0, 1 - w0 - w2, w2], lambda: -(-a * inverse + b * inverse)
+    before, after = a * (2 * room - a), b * b
+    middle = 1 - half_inverse * (before + after)
+    return [half_inverse * before, middle, half_inverse * after], lambda: a * inverse - b * inverse
 
 
 def ugimp() -> tuple[list[Number], Callable[[], object]]:

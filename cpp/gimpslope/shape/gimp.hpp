@@ -18,21 +18,21 @@ struct Gimp {
   static constexpr double behind = 0.0;    // from the left edge of the domain
   static constexpr double variance = 2.0;  // of the hat, before it is averaged
 
-  /// Values w and derivatives d (times the cell size); `xi` cells from the first node to the left
-  /// edge of the domain, which is `width` = 2 l / h cells wide, `inverse` = 1 / width. Free of
-  /// branches and of cancellation: a and b are the parts of the domain in the first and the second
-  /// cell, and a node's value is the area below its hat over them.
-  static void evaluate(double xi, double width, double inverse, double (&w)[nodes],
+  /// Values w and derivatives d (times the cell size); `room` cells from the left edge of the
+  /// domain to the second node; the domain is `width` = 2 l / h cells wide, `inverse` = 1 / width.
+  /// Free of branches and of cancellation: a and b are the parts of the domain in the first and the
+  /// second cell, and a node's value is the area below its hat over them.
+  static void evaluate(double room, double width, double inverse, double (&w)[nodes],
                        double (&d)[nodes]) {
-    const double room = 1.0 - xi;
     const double a = room < width ? room : width;
     const double b = width - a;
-    d[0] = -a * inverse;
+    const double before = a * (2.0 * room - a), after = b * b;
+    d[0] = a * -inverse;
     d[2] = b * inverse;
-    d[1] = -(d[0] + d[2]);
-    w[0] = 0.5 * inverse * a * (2.0 * room - a);
-    w[2] = 0.5 * inverse * b * b;
-    w[1] = 1.0 - w[0] - w[2];
+    d[1] = a * inverse - d[2];
+    w[0] = 0.5 * inverse * before;
+    w[2] = 0.5 * inverse * after;
+    w[1] = 1.0 - 0.5 * inverse * (before + after);
   }
 };
 
@@ -44,11 +44,12 @@ struct WideGimp {
   static constexpr double behind = Gimp::behind;
   static constexpr double variance = Gimp::variance;
 
-  static void evaluate(double xi, double width, double inverse, double (&w)[nodes],
+  static void evaluate(double room, double width, double inverse, double (&w)[nodes],
                        double (&d)[nodes]) {
+    const double left = 1.0 - room, right = left + width;  // edges, in cells from the first node
     for (int i = 0; i < nodes; ++i) {
-      w[i] = (area(xi + width - i) - area(xi - i)) * inverse;
-      d[i] = (hat(xi + width - i) - hat(xi - i)) * inverse;
+      w[i] = (area(right - i) - area(left - i)) * inverse;
+      d[i] = (hat(right - i) - hat(left - i)) * inverse;
     }
   }
 

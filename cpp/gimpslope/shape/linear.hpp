@@ -14,11 +14,11 @@ struct Linear {
   static constexpr double variance = 2.0;  // second moment, in those of a box one cell wide
 
   /// Values w and derivatives d (times the cell size) at the nodes of a point that lies
-  /// xi + behind cells to the right of the first one, 0 <= xi < 1.
-  static void evaluate(double xi, double /*width*/, double /*inverse*/, double (&w)[nodes],
+  /// 1 - room + behind cells to the right of the first one, 0 <= room < 1.
+  static void evaluate(double room, double /*width*/, double /*inverse*/, double (&w)[nodes],
                        double (&d)[nodes]) {
-    w[0] = 1.0 - xi;
-    w[1] = xi;
+    w[0] = room;
+    w[1] = 1.0 - room;
     d[0] = -1.0;
     d[1] = 1.0;
   }

@@ -14,13 +14,14 @@ struct QuadraticBspline {
   static constexpr double behind = 0.5;
   static constexpr double variance = 3.0;
 
-  static void evaluate(double xi, double /*width*/, double /*inverse*/, double (&w)[nodes],
+  static void evaluate(double room, double /*width*/, double /*inverse*/, double (&w)[nodes],
                        double (&d)[nodes]) {
-    w[0] = 0.5 * (1.0 - xi) * (1.0 - xi);
+    const double xi = 1.0 - room;
+    w[0] = 0.5 * room * room;
     w[2] = 0.5 * xi * xi;
     w[1] = 1.0 - w[0] - w[2];
-    d[0] = xi - 1.0;
-    d[1] = 1.0 - 2.0 * xi;
+    d[0] = -room;
+    d[1] = room - xi;
     d[2] = xi;
   }
 
@@ -30,8 +31,8 @@ struct QuadraticBspline {
   /// moves what touches the wall (Steffen, Wallstedt, Guilkey, Kirby and Berzins 2008, CMES 31,
   /// 107, modified boundary functions). That leaves hats in the half cell at the wall; a point
   /// beyond the wall moves with the wall's node.
-  static void at_walls(double xi, bool low, bool high, double (&w)[nodes], double (&d)[nodes]) {
-    const double inside = low ? xi - 0.5 : 0.5 - xi;
+  static void at_walls(double room, bool low, bool high, double (&w)[nodes], double (&d)[nodes]) {
+    const double inside = low ? 0.5 - room : room - 0.5;
     const double t = inside > 0.0 ? inside : 0.0, slope = inside < 0.0 ? 0.0 : 1.0;
     const bool either = low || high;
     w[0] = low ? 0.0 : (high ? t : w[0]);

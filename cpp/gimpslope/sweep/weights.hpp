@@ -30,15 +30,15 @@ struct Weights<Shape, Need::values> {
 
   /// Weights of points k to k + 3: those along x come by shuffles, those along y by loads, to keep
   /// both units of the processor busy.
-  struct Four {
+  struct FourPoints {
+    const Weights& all;
+    const int first;
     Quad along[Shape::nodes];
-    const double* up;
     [[gnu::always_inline]] Quad x(int i, int m) const { return spread(along[i], m); }
-    [[gnu::always_inline]] double y(int j, int m) const { return up[j * kBlock + m]; }
+    [[gnu::always_inline]] double y(int j, int m) const { return all.y[j][first + m]; }
   };
-  [[gnu::always_inline]] Four four(int k) const {
-    Four w;
-    w.up = y[0] + k;
+  [[gnu::always_inline]] FourPoints four(int k) const {
+    FourPoints w{*this, k, {}};
 #pragma GCC unroll 8
     for (int i = 0; i < Shape::nodes; ++i) w.along[i] = quad(x[i] + k);
     return w;
@@ -66,17 +66,15 @@ struct Weights<Shape, Need::gradients> {
   }
 
   /// Pairs of points k to k + 3, along x by loads and along y by shuffles.
-  struct Four {
-    const double* along;
+  struct FourPoints {
+    const Weights& all;
+    const int first;
     Quad up[Shape::nodes][2];
-    [[gnu::always_inline]] Quad x(int i, int m) const {
-      return twice(along + 2 * (i * kBlock + m));
-    }
+    [[gnu::always_inline]] Quad x(int i, int m) const { return twice(all.pair_x(i, first + m)); }
     [[gnu::always_inline]] Quad y(int j, int m) const { return spread_pair(up[j][m / 2], m % 2); }
   };
-  [[gnu::always_inline]] Four four(int k) const {
-    Four w;
-    w.along = x[0] + 2 * k;
+  [[gnu::always_inline]] FourPoints four(int k) const {
+    FourPoints w{*this, k, {}};
 #pragma GCC unroll 8
     for (int j = 0; j < Shape::nodes; ++j)
 #pragma GCC unroll 8
@@ -101,8 +99,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
   const double per_cell = 1.0 / grid.cell;
   constexpr bool relative = PointsView<Real>::relative;
   const std::int32_t* home = relative ? view.points.home + begin : nullptr;
-  const double origin_x = (relative ? 0.0 : grid.left * per_cell) + Shape::behind;
-  const double origin_y = (relative ? 0.0 : grid.bottom * per_cell) + Shape::behind;
+  const double origin_x = (relative ? 0.0 : grid.left * per_cell) + Shape::behind + 1.0;
+  const double origin_y = (relative ? 0.0 : grid.bottom * per_cell) + Shape::behind + 1.0;
   const double stride = grid.stride;
   const double common = Shape::widest > 0.0 ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::widest > 0.0 ? 1.0 / common : 0.0;
@@ -118,22 +116,22 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
     }
     const double x = px[k] * per_cell - (origin_x + 0.5 * width_x);
     const double y = py[k] * per_cell - (origin_y + 0.5 * width_y);
-    const double column = std::trunc(x), row = std::trunc(y);
+    const double column = std::ceil(x), row = std::ceil(y);
     out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
     if constexpr (relative) out.first[k] += home[k];
 
     double w[Shape::nodes], d[Shape::nodes];
-    Shape::evaluate(x - column, width_x, inverse_x, w, d);
+    Shape::evaluate(column - x, width_x, inverse_x, w, d);
     if constexpr (ChangesAtWalls<Shape>) {
       const int i = static_cast<int>(column) + (relative ? home[k] % grid.stride : 0);
-      Shape::at_walls(x - column, i == grid.wall[Side::left] - 1,
+      Shape::at_walls(column - x, i == grid.wall[Side::left] - 1,
                       i + Shape::nodes - 2 == grid.wall[Side::right], w, d);
     }
     for (int i = 0; i < Shape::nodes; ++i) out.set_x(i, k, w[i], d[i]);
-    Shape::evaluate(y - row, width_y, inverse_y, w, d);
+    Shape::evaluate(row - y, width_y, inverse_y, w, d);
     if constexpr (ChangesAtWalls<Shape>) {
       const int j = static_cast<int>(row) + (relative ? home[k] / grid.stride : 0);
-      Shape::at_walls(y - row, j == grid.wall[Side::bottom] - 1,
+      Shape::at_walls(row - y, j == grid.wall[Side::bottom] - 1,
                       j + Shape::nodes - 2 == grid.wall[Side::top], w, d);
     }
     for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);

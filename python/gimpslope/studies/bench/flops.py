@@ -20,12 +20,13 @@ NODES = MappingProxyType({"linear": 2, "ugimp": 3, "cpgimp": 3})
 
 _POINTS_PER_NODE = 4  # as many as a cell has
 
-# Along one axis: the place in cells of the point or its left edge, x / h - c, and its fraction.
+# Along one axis: the place in cells of the point or its left edge, x / h - c, and what is left to
+# the next node.
 _PLACE = {"linear": 3, "ugimp": 3, "cpgimp": 3}
 # Of a domain that is the point's own: 2 l / h, its half, which c takes up, its inverse and half of
 # that.
 _OWN_DOMAIN = {"linear": 0, "ugimp": 0, "cpgimp": 5}
-# Linear: 1 - xi. GIMP: 1 - xi, a, b; w0 (4), w2 (2), w1 (2).
+# Linear: 1 - room. GIMP: a, b; what is before and after the node (3, 1); w0, w2, w1 (1, 1, 3).
 _VALUES = {"linear": 1, "ugimp": 11, "cpgimp": 11}
 # GIMP: a / width, b / width and the middle one.
 _DERIVATIVES = {"linear": 0, "ugimp": 3, "cpgimp": 3}
