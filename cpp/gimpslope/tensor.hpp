@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 
 #ifdef __AVX__
 #include <immintrin.h>
@@ -79,7 +80,8 @@ inline Quad twice(const double* pair) {
 }
 
 /// Without signs.
-[[gnu::always_inline]] inline Quad size_of(Quad q) {
+[[gnu::always_inline]] inline double absolute(double x) { return std::fabs(x); }
+[[gnu::always_inline]] inline Quad absolute(Quad q) {
   using Bits [[gnu::vector_size(sizeof(Quad))]] = long long;
   return reinterpret_cast<Quad>(reinterpret_cast<Bits>(q) & 0x7fff'ffff'ffff'ffff);
 }
@@ -89,22 +91,6 @@ inline Quad twice(const double* pair) {
 
 /// Two doubles: a vector in the plane.
 using Pair = Eigen::Array<double, 2, 1>;
-
-inline Eigen::Map<const Pair, Eigen::Aligned16> pair(const double* two) {
-  return Eigen::Map<const Pair, Eigen::Aligned16>(two);
-}
-
-/// The same number, of which the compiler does not know that it is the same.
-[[gnu::always_inline]] inline double another(double x) {
-#if defined(__x86_64__)
-  asm("" : "+x"(x));
-#elif defined(__aarch64__)
-  asm("" : "+w"(x));
-#else
-  asm("" : "+m"(x));
-#endif
-  return x;
-}
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
 }  // namespace gimpslope

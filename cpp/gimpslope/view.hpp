@@ -97,8 +97,8 @@ struct BodyNode {
   double arm[2];                  // from the body's centre, m
   double mass;                    // of the soil, kg/m
   double raw[2], before[2];       // velocity of the soil, and with the body, m/s
-  double internal[2], weight[2];  // forces, N/m
-  double body[2], damping[2], full_weight[2];
+  double internal[2], acting[2];  // forces, N/m
+  double body[2], damping[2];
   // Where soil may slide along the body:
   double slope[2];   // down which the share falls, a cell
   double normal[2];  // of the body's surface, outwards

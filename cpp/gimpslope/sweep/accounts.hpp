@@ -3,8 +3,8 @@
 
 #include "../ledger.hpp"
 #include "../rotation.hpp"
-#include "../tensor.hpp"
 #include "../view.hpp"
+#include "lanes.hpp"
 
 namespace gimpslope {
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
@@ -27,33 +27,51 @@ inline void add_wall(const GridView& g, int column, int row, int component, bool
   (rubs && !hits ? sum.friction : sum.impact) += taken;
 }
 
-/// The forces and velocities of a node in a step.
+/// The forces and velocities of nodes in a step.
+template <class V>
 struct NodeStep {
-  double mass, inverse_mass;
-  Pair internal, weight, body, damping;  // weight: of the gravity that acts
-  Pair acting;                           // internal + weight
-  Pair full_weight;
-  Pair raw, before, after;  // v-, v', v+
+  V mass, inverse_mass;
+  Two<V> internal, acting, body, damping;  // acting: internal forces and the gravity that acts
+  Two<V> raw, before, after;               // v-, v', v+
 
-  Pair total() const { return acting + body + damping; }
+  V total(int c) const { return acting[c] + body[c] + damping[c]; }
 };
 
-/// What a step does at a node. With `stress_last` the internal forces do their work at the velocity
+/// Sums of what steps do at nodes, J/m.
+template <class V>
+struct NodeWork {
+  V damping{}, external{}, integration{}, transfer{};
+};
+
+/// What a step does at nodes. With `stress_last` the internal forces do their work at the velocity
 /// after the step.
-inline void add_node(const NodeStep& s, double dt, Ledger& sum, bool stress_last = false) {
+template <class V>
+[[gnu::always_inline]] inline void add_nodes(const NodeStep<V>& s, const StepInput& step,
+                                             NodeWork<V>& sum, bool stress_last = false) {
+  const double acts[2] = {step.gravity_x, step.gravity_y};
+  const double full[2] = {step.full_gravity_x, step.full_gravity_y};
   for (int c = 0; c < 2; ++c) {
-    const double middle = 0.5 * (s.before[c] + s.after[c]), change = s.after[c] - s.before[c];
-    sum.damping -= dt * s.damping[c] * middle;
-    sum.external += dt * (s.body[c] + s.weight[c] - s.full_weight[c]) * middle;
-    const double late = stress_last ? -s.internal[c] : s.internal[c];
-    sum.integration -= 0.5 * dt * (late - s.full_weight[c]) * change;
+    const V middle = 0.5 * (s.before[c] + s.after[c]), change = s.after[c] - s.before[c];
+    const V held_back = s.mass * (full[c] - acts[c]);  // by a ramp
+    const V late = stress_last ? -s.internal[c] : s.internal[c];
+    sum.damping -= step.dt * s.damping[c] * middle;
+    sum.external += step.dt * (s.body[c] - held_back) * middle;
+    sum.integration -= 0.5 * step.dt * (late - s.mass * full[c]) * change;
     sum.transfer += 0.5 * s.mass * (s.after[c] - s.raw[c]) * (s.after[c] + s.raw[c]);
   }
 }
 
+template <class V>
+void add(const NodeWork<V>& work, Ledger& sum) {
+  sum.damping += total(work.damping);
+  sum.external += total(work.external);
+  sum.integration += total(work.integration);
+  sum.transfer += total(work.transfer);
+}
+
 /// Energy that the reactions of the walls take from a component of a node's motion.
-inline double taken_by_walls(const NodeStep& s, double dt, int c) {
-  const double impulse = s.mass * (s.after[c] - s.before[c]) - dt * s.total()[c];
+inline double taken_by_walls(const NodeStep<double>& s, double dt, int c) {
+  const double impulse = s.mass * (s.after[c] - s.before[c]) - dt * s.total(c);
   return -impulse * 0.5 * (s.before[c] + s.after[c]);
 }
 

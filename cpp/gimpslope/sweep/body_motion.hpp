@@ -29,19 +29,13 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
     force[c] = given.force[c] + mass * (c == 0 ? input.gravity_x : input.gravity_y);
   for (int k = 0; k < all.reaches[body]; ++k) {
     BodyNode& node = nodes[k];
-    const NodeStep s = forces_on(view.grid, node.node, input);
-    node.mass = s.mass;
-    set(node.internal, s.internal);
-    set(node.weight, s.weight);
-    set(node.body, s.body);
-    set(node.damping, s.damping);
-    set(node.full_weight, s.full_weight);
-    set(node.raw, s.raw);
-    set(node.before, s.before);
-    const Pair pull = s.total() - s.damping, brought = s.mass * s.raw;
+    const NodeStep<double> s = forces_on<double>(view.grid, node.node, input);
+    keep(s, node);
+    const Pair raw(s.raw[0], s.raw[1]), all_forces(s.total(0), s.total(1));
+    const Pair pull = all_forces - Pair(s.damping[0], s.damping[1]), brought = s.mass * raw;
     if (slides) {
       node.damped = node.meeting == Meeting::apart;
-      set(node.free, s.raw + input.dt * s.inverse_mass * (node.damped ? s.total() : pull));
+      set(node.free, raw + input.dt * s.inverse_mass * (node.damped ? all_forces : pull));
       if (!node.damped) {  // of the whole, for damping
         for (int c = 0; c < 2; ++c) around[c] += pull[c];
         around_moment += cross(node.arm, pull);
@@ -106,25 +100,27 @@ inline void release_nodes(const View<double>& view, const StepInput& input, int 
   for (int k = 0; k < all.reaches[body]; ++k) {
     const BodyNode& node = nodes[k];
     const double arm[2] = {node.arm[0] - held.centre[0], node.arm[1] - held.centre[1]};
-    NodeStep s = step_of(node);
+    NodeStep<double> s = kept(node);
+    const Pair raw(s.raw[0], s.raw[1]);
     Pair held_velocity = velocity_at(held.velocity, held.spin, arm);
     if (slides)
       held_velocity =
           Pair(node.free[0], node.free[1]) + s.inverse_mass * Pair(node.taken[0], node.taken[1]);
     const Pair moved = input.dt * held_velocity;
-    const Pair gained = held_velocity - (1.0 - input.alpha) * s.raw;
+    const Pair gained = held_velocity - (1.0 - input.alpha) * raw;
     quad(view.grid.update + 4 * node.node) = Quad{moved[0], moved[1], gained[0], gained[1]};
     if (view.ledger == nullptr) continue;
-    Ledger free;  // as it was booked
-    s.after = s.raw + input.dt * s.inverse_mass * s.total();
-    add_node(s, input.dt, free);
+    NodeWork<double> free, held_work;  // as it was booked, and as it is
+    for (int c = 0; c < 2; ++c) s.after[c] = s.raw[c] + input.dt * s.inverse_mass * s.total(c);
+    add_nodes(s, input, free);
     ledger.damping -= free.damping;
     ledger.external -= free.external;
     ledger.integration -= free.integration;
     ledger.transfer -= free.transfer;
-    if (!slides || !node.damped) s.damping = Pair::Zero();
-    s.after = held_velocity;
-    add_node(s, input.dt, ledger);
+    if (!slides || !node.damped) s.damping = {};
+    set(s.after.of, held_velocity);
+    add_nodes(s, input, held_work);
+    add(held_work, ledger);
     for (int c = 0; c < 2; ++c)
       ledger.rigidity += taken_by_walls(s, input.dt, c) +
                          0.5 * s.mass * (s.raw[c] - s.before[c]) * (s.raw[c] + s.before[c]);

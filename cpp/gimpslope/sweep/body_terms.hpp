@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "accounts.hpp"
 #include "nodes.hpp"
@@ -21,18 +22,32 @@ inline void set(double* two, const Pair& value) {
   two[1] = value[1];
 }
 
-inline NodeStep step_of(const BodyNode& node) {
-  NodeStep s;
+template <std::size_t kCount>
+void copy(const double (&from)[kCount], double (&to)[kCount]) {
+  for (std::size_t c = 0; c < kCount; ++c) to[c] = from[c];
+}
+
+/// Keeps the forces on a node, and its velocities, for when it is released.
+inline void keep(const NodeStep<double>& s, BodyNode& node) {
+  node.mass = s.mass;
+  copy(s.internal.of, node.internal);
+  copy(s.acting.of, node.acting);
+  copy(s.body.of, node.body);
+  copy(s.damping.of, node.damping);
+  copy(s.raw.of, node.raw);
+  copy(s.before.of, node.before);
+}
+
+inline NodeStep<double> kept(const BodyNode& node) {
+  NodeStep<double> s;
   s.mass = node.mass;
   s.inverse_mass = 1.0 / node.mass;
-  s.internal = Pair(node.internal[0], node.internal[1]);
-  s.weight = Pair(node.weight[0], node.weight[1]);
-  s.acting = s.internal + s.weight;
-  s.body = Pair(node.body[0], node.body[1]);
-  s.damping = Pair(node.damping[0], node.damping[1]);
-  s.full_weight = Pair(node.full_weight[0], node.full_weight[1]);
-  s.raw = Pair(node.raw[0], node.raw[1]);
-  s.before = Pair(node.before[0], node.before[1]);
+  copy(node.internal, s.internal.of);
+  copy(node.acting, s.acting.of);
+  copy(node.body, s.body.of);
+  copy(node.damping, s.damping.of);
+  copy(node.raw, s.raw.of);
+  copy(node.before, s.before.of);
   return s;
 }
 

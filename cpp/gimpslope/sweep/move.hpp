@@ -28,9 +28,9 @@ void gather_change(const View<Real>& view, int n, const Weights<Shape, Need::val
   Quad farthest{}, all{};
   gather_block<Shape>(view.grid.update, view.grid.stride, n, weights,
                       [&](int k, const Quad(&sums)[4]) {
-                        const Quad x = size_of(sums[0]), y = size_of(sums[1]);
+                        const Quad x = absolute(sums[0]), y = absolute(sums[1]);
                         farthest = larger(larger(x, y), farthest);
-                        all += (x + y) + (size_of(sums[2]) + size_of(sums[3]));
+                        all += (x + y) + (absolute(sums[2]) + absolute(sums[3]));
                         quad(change.x + k) = sums[0];
                         quad(change.y + k) = sums[1];
                         quad(change.vx + k) = sums[2];

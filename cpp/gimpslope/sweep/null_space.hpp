@@ -46,7 +46,7 @@ template <class Shape, bool kOwnDomain, class Real>
 /// The next term, u - S+ S u, and the sum of those so far.
 inline void next_term(const GridView& g, int row) {
   const auto subtract = [&](int node, double share_x, double share_y) {
-    const double mass = g.momentum[4 * node], inverse = mass > 0.0 ? 1.0 / mass : 0.0;
+    const double inverse = inverse_of(g.momentum[4 * node]);
     double *spread = g.spread + 4 * node, *term = g.terms + 4 * node;
     term[0] -= share_x * inverse * spread[0];
     term[1] -= share_y * inverse * spread[1];
@@ -55,7 +55,10 @@ inline void next_term(const GridView& g, int row) {
     quad(spread) = Quad{};
   };
   for_each_node(
-      g, row, [&](int node) { subtract(node, 1.0, 1.0); },
+      g, row,
+      [&]<class V>(V, int node) {
+        for (int m = 0; m < kLanes<V>; ++m) subtract(node + m, 1.0, 1.0);
+      },
       [&](int node, int /*column*/) {
         const double* shown = g.velocity + 4 * node;
         subtract(node, shown[0] != 0.0, shown[2] != 0.0);

@@ -11,20 +11,21 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 /// forces. What the forces do at this velocity and not at the one after the step is lost on the way
 /// through the points: it goes to `transfer` in the row's ledger where one is kept.
 inline void renew_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
-  const auto set = [&](int node, const Pair& v) {
+  const auto set = [&]<class V>(int node, const Two<V>& v) {
     if (ledger != nullptr) {
-      const double* f = g.force + 4 * node;
-      const Pair later = step.dt * v - pair(g.update + 4 * node);
-      ledger->transfer += (f[0] + f[1]) * later[0] + (f[2] + f[3]) * later[1];
+      const Four<V> f = load<V>(g.force + 4 * node), moved = load<V>(g.update + 4 * node);
+      for (int c = 0; c < 2; ++c)
+        ledger->transfer += total((f[2 * c] + f[2 * c + 1]) * (step.dt * v[c] - moved[c]));
     }
     show_velocity(g, node, v);
-    quad(g.momentum + 4 * node) = Quad{};
-    quad(g.force + 4 * node) = Quad{};
+    clear<V>(g.momentum + 4 * node);
+    clear<V>(g.force + 4 * node);
   };
   for_each_node(
-      g, row, [&](int node) { set(node, velocity_of(g.momentum + 4 * node)); },
+      g, row, [&]<class V>(V, int node) { set(node, velocity_of<V>(g.momentum + 4 * node)); },
       [&](int node, int column) {
-        set(node, within_walls(g, column, row, node, velocity_of(g.momentum + 4 * node)));
+        const Two<double> raw = velocity_of<double>(g.momentum + 4 * node);
+        set(node, within_walls(g, column, row, node, raw));
       });
 }
 
