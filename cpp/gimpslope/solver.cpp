@@ -332,12 +332,15 @@ void Solver::fail(const std::string& what, std::int64_t point) {
 void Solver::fail_at(int lost, double dt) {
   const Points& p = points();
   const double x = p.position[0][lost], y = p.position[1][lost];
-  const double speed = std::sqrt(squared_speed(p, lost));
+  const int fastest = fastest_point();
+  const double speed = std::sqrt(squared_speed(p, fastest));
   bool finite = std::isfinite(p.volume[0][lost]);
   for (int c = 0; c < 4; ++c) finite = finite && std::isfinite(p.stress[c][lost]);
   std::string cause = "an inverted domain, or points too far apart to share nodes";
   if (speed * dt > kFarthestStep * cell()) {
-    cause = "its speed of " + text(speed) + " m/s";
+    cause = (fastest == lost ? std::string("its speed of ")
+                             : "the speed of point " + std::to_string(p.number[fastest]) + ", ") +
+            text(speed) + " m/s";
   } else if (dt > stable_at_sort_) {
     cause = "the time step of " + text(dt) + " s is above the stable limit of " +
             text(stable_at_sort_) + " s";
@@ -408,7 +411,7 @@ double Solver::time_step() {
     fail("a point moves at " + text(point) + " m/s, more than " + text(kFastest) +
              " times the wave speed of " + text(wave) +
              " m/s; likely cause: a given velocity, or a force on a point without mass around it",
-         fastest_point());
+         points_.number[fastest_point()]);
   }
   return method_.time_step.value * grid_.cell() / (wave + point);
 }
@@ -429,7 +432,7 @@ int Solver::fastest_point() const {
   int fastest = 0;
   for (int k = 1; k < p.size; ++k)
     if (squared_speed(p, k) > squared_speed(p, fastest)) fastest = k;
-  return p.number[fastest];
+  return fastest;
 }
 
 std::int64_t Solver::bytes() const {

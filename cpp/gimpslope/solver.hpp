@@ -136,7 +136,7 @@ class Solver {
   double kinetic_energy() const;
   void gather_speeds();
   Energies gather_energies() const;
-  int fastest_point() const;
+  int fastest_point() const;  // its index
 
   Method method_;
   InstructionSet instruction_set_;
