@@ -29,6 +29,18 @@ inline const QuadOfDoubles& quad(const double* four) {
   return *reinterpret_cast<const QuadOfDoubles*>(four);
 }
 
+/// Four numbers that follow one another anywhere. Properties of points have room for those after
+/// the last one.
+template <class Real>
+[[gnu::always_inline]] inline Quad four(const Real* numbers) {
+  if constexpr (sizeof(Real) == sizeof(double)) {
+    using Anywhere [[gnu::may_alias, gnu::aligned(alignof(double))]] = Quad;
+    return *reinterpret_cast<const Anywhere*>(numbers);
+  } else {
+    return Quad{numbers[0], numbers[1], numbers[2], numbers[3]};
+  }
+}
+
 /// {a, b, a, b} of the pair {a, b}.
 inline Quad twice(const double* pair) {
 #ifdef __AVX__

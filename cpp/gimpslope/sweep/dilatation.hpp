@@ -118,20 +118,21 @@ void averaged_force_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  scatter_stress(view, begin, n, weights, [&](PointForces& forces) {
-    CellPlaces places;
-    find_cells(view, begin, n, places);
-    const double* cells = view.grid.cells;
-    const Real* volume = view.points.volume + begin;
-    const double per_cell = -1.0 / view.grid.cell;
+  CellPlaces places;
+  find_cells(view, begin, n, places);
+  const double* cells = view.grid.cells;
+  const Real* volume = view.points.volume + begin;
+  const double per_cell = -1.0 / view.grid.cell;
+  alignas(kCacheLine) double mean[kBlock];
 #pragma omp simd
-    for (int k = 0; k < n; ++k) {
-      const double* cell = cells + 4 * std::ptrdiff_t{places.of[k]};
-      const double mean = per_cell * volume[k] * (cell[2] / cell[3]);
-      const double change = mean - 0.5 * (forces.xx[k] + forces.yy[k]);
-      forces.xx[k] += change;
-      forces.yy[k] += change;
-    }
+  for (int k = 0; k < n; ++k) {
+    const double* cell = cells + 4 * std::ptrdiff_t{places.of[k]};
+    mean[k] = per_cell * volume[k] * (cell[2] / cell[3]);
+  }
+  scatter_stress(view, begin, n, weights, [&](int k, Quad& xx, Quad& yy) {
+    const Quad change = quad(mean + k) - 0.5 * (xx + yy);
+    xx += change;
+    yy += change;
   });
 }
 

@@ -56,6 +56,22 @@ class NodeSums {
   Quad sum_[Shape::nodes][Shape::nodes]{};
 };
 
+/// What each point of a block brings to its nodes, put together for four points at a time.
+class PointQuads {
+ public:
+  /// Of points k to k + 3, by component.
+  [[gnu::always_inline]] void put(int k, const Quad (&components)[4]) {
+    Quad points[4] = {components[0], components[1], components[2], components[3]};
+    transpose(points);
+#pragma GCC unroll 4
+    for (int m = 0; m < 4; ++m) quad(quads_ + 4 * (k + m)) = points[m];
+  }
+  [[gnu::always_inline]] Quad of(int k) const { return quad(quads_ + 4 * k); }
+
+ private:
+  alignas(kCacheLine) double quads_[4 * kBlock];
+};
+
 /// Mass and momentum at the nodes (paper eq. 18-19), from weights at the points' present places.
 template <class Shape, class Real>
 void scatter_momentum(const View<Real>& view, int begin, int n,
@@ -63,12 +79,16 @@ void scatter_momentum(const View<Real>& view, int begin, int n,
   const Real* vx = view.points.vx + begin;
   const Real* vy = view.points.vy + begin;
   const Real* mass = view.points.mass + begin;
+  PointQuads momenta;
+  for (int k = 0; k < n; k += 4) {
+    const Quad m = four(mass + k);
+    momenta.put(k, {m, m, m * four(vx + k), m * four(vy + k)});
+  }
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
-    const double m = mass[k];
     nodes.add(
-        Quad{m, m, m * vx[k], m * vy[k]}, [&](int i) { return weights.value_x(i, k); },
+        momenta.of(k), [&](int i) { return weights.value_x(i, k); },
         [&](int j) { return weights.value_y(j, k); });
   }
 }
@@ -111,21 +131,16 @@ void scatter_body_forces(const View<Real>& view, int begin, int n,
   }
 }
 
-/// -V / h times the stresses in the plane, of the points of a block.
-struct PointForces {
-  alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
-};
-
-/// Internal forces at the nodes (paper eq. 11): -V sigma grad S.
+/// Internal forces at the nodes (paper eq. 11): -V sigma grad S, of quads {xx, xy, xy, yy} of
+/// -V sigma / h.
 template <class Shape, class Real>
 void scatter_forces(const View<Real>& view, int n, const Weights<Shape, Need::gradients>& weights,
-                    const PointForces& forces) {
+                    const PointQuads& forces) {
   NodeSums<Shape> nodes(view.grid.force, view.grid.stride);
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
     nodes.add(
-        Quad{forces.xx[k], forces.xy[k], forces.xy[k], forces.yy[k]},
-        [&](int i) { return twice(weights.pair_x(i, k)); },
+        forces.of(k), [&](int i) { return twice(weights.pair_x(i, k)); },
         [&](int j) { return twice(weights.pair_y(j, k)); });
   }
 }

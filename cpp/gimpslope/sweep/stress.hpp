@@ -118,32 +118,26 @@ void apply_law(const View<Real>& view, const Block& block, const Law& law, const
   if (margin == kUnknown) margin = yield_margin(plastic, view.points, begin, n);
 }
 
-template <class Real>
-void point_forces(const View<Real>& view, int begin, int n, PointForces& forces) {
-  const PointsView<Real>& p = view.points;
-  const Real *volume = p.volume + begin, *xx = p.stress_xx + begin;
-  const Real *yy = p.stress_yy + begin, *xy = p.stress_xy + begin;
-  const double per_cell = -1.0 / view.grid.cell;
-#pragma omp simd
-  for (int k = 0; k < n; ++k) {
-    const double factor = per_cell * volume[k];
-    forces.xx[k] = factor * xx[k];
-    forces.yy[k] = factor * yy[k];
-    forces.xy[k] = factor * xy[k];
-  }
-}
-
-/// Forces at the nodes: of the stresses, after `change` of the forces that they are at the points,
-/// and body forces.
+/// Forces at the nodes: of the stresses, of whose -V / h times xx and yy change(k, xx, yy) makes
+/// others for points k to k + 3, and body forces.
 template <class Shape, class Real, class Change>
 [[gnu::always_inline]] inline void scatter_stress(const View<Real>& view, int begin, int n,
                                                   const Weights<Shape, Need::gradients>& weights,
                                                   Change change) {
-  PointForces forces;
-  point_forces(view, begin, n, forces);
-  change(forces);
+  const PointsView<Real>& p = view.points;
+  const Real *volume = p.volume + begin, *stress_xx = p.stress_xx + begin;
+  const Real *stress_yy = p.stress_yy + begin, *stress_xy = p.stress_xy + begin;
+  const double per_cell = -1.0 / view.grid.cell;
+  PointQuads forces;
+  for (int k = 0; k < n; k += 4) {
+    const Quad factor = per_cell * four(volume + k);
+    Quad xx = factor * four(stress_xx + k), yy = factor * four(stress_yy + k);
+    const Quad xy = factor * four(stress_xy + k);
+    change(k, xx, yy);
+    forces.put(k, {xx, xy, xy, yy});
+  }
   scatter_forces(view, n, weights, forces);
-  if (view.points.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
+  if (p.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
 }
 
 /// Volume, deformation and stress of a block after its strain increments.
@@ -174,7 +168,7 @@ void stress_block(const View<Real>& view, const StepInput& input, const Block& b
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
   gather_gradient(view, n, weights, gradient);
   deform_block(view, input, block, gradient, ledger);
-  scatter_stress(view, begin, n, weights, [](PointForces&) {});
+  scatter_stress(view, begin, n, weights, [](int, Quad&, Quad&) {});
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

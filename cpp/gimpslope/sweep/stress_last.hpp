@@ -15,7 +15,7 @@ void force_block(const View<Real>& view, const Block& block) {
   const int begin = block.begin, n = block.end - block.begin;
   Weights<Shape, Need::gradients> weights;
   evaluate<Shape, kOwnDomain>(view, begin, n, weights);
-  scatter_stress(view, begin, n, weights, [](PointForces&) {});
+  scatter_stress(view, begin, n, weights, [](int, Quad&, Quad&) {});
 }
 
 /// Forces at the nodes.
