@@ -379,6 +379,15 @@ def bursting_dust() -> dict[str, Any]:
     )
 
 
+def few_points(count: int) -> Callable[[], dict[str, Any]]:
+    """So few that they do not fill the fours and eights in which the kernel takes them."""
+
+    def scene() -> dict[str, Any]:
+        return BASE | block(count, 1, jitter=0.3, speed=0.3, prestress=3e3)
+
+    return scene
+
+
 SCENES = {
     "spinning_disk": spinning_disk,
     "long_flight": long_flight,
@@ -388,6 +397,7 @@ SCENES = {
     "expanding_dust_stretch": expanding_dust("stretch"),
     "expanding_dust_deformation_diagonal": expanding_dust("deformation_diagonal"),
     "bursting_dust": bursting_dust,
+    **{f"points_{count}": few_points(count) for count in (1, 2, 3, 5, 9)},
 }
 
 

@@ -237,9 +237,10 @@ def test_refused_settings_leave_the_old_ones() -> None:
     np.testing.assert_array_equal(stepped.get("position"), untouched.get("position"))
 
 
-def test_body_forces_of_zero_change_nothing() -> None:
+@pytest.mark.parametrize("instruction_set", _core.instruction_sets())
+def test_body_forces_of_zero_change_nothing(instruction_set: str) -> None:
     """Nodes with and without body forces are stepped by different instances of one loop."""
-    free, given = solver(SCENE), solver(SCENE)
+    free, given = (solver(SCENE, instruction_set=instruction_set) for _ in range(2))
     given.set("body_force", np.zeros((N, 2)))
     for each in (free, given):
         each.advance(20)

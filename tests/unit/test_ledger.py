@@ -11,6 +11,7 @@ from coarse_slope import METHOD, simulate
 from kernel_scene import sliding, solver
 
 import gimpslope as gs
+from gimpslope import _core
 from gimpslope._check import FloatArray
 from gimpslope.figures import ledger as draw_ledger
 from gimpslope.io import hdf5
@@ -246,8 +247,12 @@ def test_the_entries_do_not_depend_on_the_threads() -> None:
     assert min(found[0][name] for name in ("plastic", "friction", "transfer")) > 0
 
 
-def test_the_ledger_changes_nothing() -> None:
-    plain, accounted = solver(sliding()), solver(sliding(), ledger=True)
+@pytest.mark.parametrize("instruction_set", _core.instruction_sets())
+def test_the_ledger_changes_nothing(instruction_set: str) -> None:
+    plain, accounted = (
+        solver(sliding(), ledger=ledger, instruction_set=instruction_set)
+        for ledger in (False, True)
+    )
     for slide in (plain, accounted):
         slide.advance(100)
     for name in ("position", "velocity", "stress", "plastic_strain"):
