@@ -10,13 +10,12 @@
 namespace gimpslope {
 namespace {
 
-/// The cell at a distance of so many `cells` from the origin, which ends where the next one begins,
-/// as in `evaluate`; `position` is for the error.
+/// The cell at a distance of so many `cells` from the origin; `position` is for the error.
 std::int32_t cell_at(double cells, double position) {
   constexpr double farthest = 1e9;
   require(std::abs(cells) < farthest, "position", position, "within 1e9 cells of the origin");
   const auto cell = static_cast<std::int32_t>(cells);
-  return cell - (cells <= cell);
+  return cell - (cells < cell);
 }
 
 /// The cell of each point's first node.

@@ -7,8 +7,6 @@
 namespace gimpslope {
 namespace {
 
-constexpr int kQuadBeyond = 3;  // what a quad that begins with the last point reads after it
-
 template <class T>
 void permute(T* data, const std::vector<std::int32_t>& order, Buffer<T>& scratch) {
   T* sorted = scratch.data();
@@ -26,9 +24,7 @@ std::ptrdiff_t whole_lines(std::ptrdiff_t n) {
 
 template <class Real>
 Field<Real>::Field(int components, int points)
-    : components_(components),
-      stride_(whole_lines<Real>(points + kQuadBeyond)),
-      values_(components * stride_) {}
+    : components_(components), stride_(whole_lines<Real>(points)), values_(components * stride_) {}
 
 template <class Real>
 std::array<Field<Real>*, 11> State<Real>::fields() {

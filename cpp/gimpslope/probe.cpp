@@ -22,9 +22,9 @@ ShapeValues evaluate_all(std::span<const double> position, std::span<const doubl
     for (int axis = 0; axis < 2; ++axis) {
       const double width = Shape::widest > 0.0 ? 2.0 * half_length[k + axis] / cell : 0.0;
       const double edge = (position[k + axis] - origin[axis]) / cell - 0.5 * width - Shape::behind;
-      const double second = std::ceil(edge);
-      first[axis] = static_cast<std::int64_t>(second) - 1;
-      Shape::evaluate(second - edge, width, 1.0 / width, w[axis], d[axis]);
+      first[axis] = static_cast<std::int64_t>(std::floor(edge));
+      const double room = static_cast<double>(first[axis] + 1) - edge;
+      Shape::evaluate(room, width, 1.0 / width, w[axis], d[axis]);
     }
     for (int j = 0; j < nodes; ++j) {
       for (int i = 0; i < nodes; ++i) {

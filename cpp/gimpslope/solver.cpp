@@ -332,18 +332,21 @@ void Solver::fail(const std::string& what, std::int64_t point) {
 void Solver::fail_at(int lost, double dt) {
   const Points& p = points();
   const double x = p.position[0][lost], y = p.position[1][lost];
-  const int fastest = fastest_point();
-  const double speed = std::sqrt(squared_speed(p, fastest));
+  const double farthest = kFarthestStep * cell();
+  const int fastest = fastest_near(lost);
+  const double own = std::sqrt(squared_speed(p, lost)),
+               speed = std::sqrt(squared_speed(p, fastest));
   bool finite = std::isfinite(p.volume[0][lost]);
   for (int c = 0; c < 4; ++c) finite = finite && std::isfinite(p.stress[c][lost]);
   std::string cause = "an inverted domain, or points too far apart to share nodes";
-  if (speed * dt > kFarthestStep * cell()) {
-    cause = (fastest == lost ? std::string("its speed of ")
-                             : "the speed of point " + std::to_string(p.number[fastest]) + ", ") +
-            text(speed) + " m/s";
+  if (own * dt > farthest) {
+    cause = "its speed of " + text(own) + " m/s";
   } else if (dt > stable_at_sort_) {
     cause = "the time step of " + text(dt) + " s is above the stable limit of " +
             text(stable_at_sort_) + " s";
+  } else if (speed * dt > farthest) {
+    cause = "the speed of point " + std::to_string(p.number[fastest]) + " near it, " + text(speed) +
+            " m/s";
   }
   fail("point " + std::to_string(points_.number[lost]) + " at (" + text(x) + ", " + text(y) +
            ") m " +
@@ -432,6 +435,19 @@ int Solver::fastest_point() const {
   int fastest = 0;
   for (int k = 1; k < p.size; ++k)
     if (squared_speed(p, k) > squared_speed(p, fastest)) fastest = k;
+  return fastest;
+}
+
+/// Of the points that can share nodes with one.
+int Solver::fastest_near(int point) const {
+  const Points& p = points();
+  const double reach = traits(basis_.shape).nodes * grid_.cell();
+  int fastest = point;
+  for (int k = 0; k < p.size; ++k) {
+    const bool near = std::abs(p.position[0][k] - p.position[0][point]) < reach &&
+                      std::abs(p.position[1][k] - p.position[1][point]) < reach;
+    if (near && squared_speed(p, k) > squared_speed(p, fastest)) fastest = k;
+  }
   return fastest;
 }
 

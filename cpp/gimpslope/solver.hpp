@@ -137,6 +137,7 @@ class Solver {
   void gather_speeds();
   Energies gather_energies() const;
   int fastest_point() const;  // its index
+  int fastest_near(int point) const;
 
   Method method_;
   InstructionSet instruction_set_;

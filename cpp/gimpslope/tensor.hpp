@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <type_traits>
 
 #ifdef __AVX__
 #include <immintrin.h>
@@ -29,16 +30,27 @@ inline const QuadOfDoubles& quad(const double* four) {
   return *reinterpret_cast<const QuadOfDoubles*>(four);
 }
 
-/// Four numbers that follow one another anywhere. Properties of points have room for those after
-/// the last one.
-template <class Real>
-[[gnu::always_inline]] inline Quad four(const Real* numbers) {
-  if constexpr (sizeof(Real) == sizeof(double)) {
+/// Four numbers that follow one another anywhere, or so many of them and the last one again.
+template <class Real, class Count>
+[[gnu::always_inline]] inline Quad four(const Real* numbers, Count count) {
+  if constexpr (std::is_same_v<Count, int>) {
+    const int last = count - 1;
+    return Quad{numbers[0], numbers[last < 1 ? last : 1], numbers[last < 2 ? last : 2],
+                numbers[last]};
+  } else if constexpr (sizeof(Real) == sizeof(double)) {
     using Anywhere [[gnu::may_alias, gnu::aligned(alignof(double))]] = Quad;
     return *reinterpret_cast<const Anywhere*>(numbers);
   } else {
     return Quad{numbers[0], numbers[1], numbers[2], numbers[3]};
   }
+}
+
+/// Calls act(k, count) for points k to k + 3 of n, with a constant, and for those that are left.
+template <class Act>
+[[gnu::always_inline]] inline void by_fours(int n, Act act) {
+  int k = 0;
+  for (; k + 4 <= n; k += 4) act(k, std::integral_constant<int, 4>{});
+  if (k < n) act(k, n - k);
 }
 
 /// {a, b, a, b} of the pair {a, b}.

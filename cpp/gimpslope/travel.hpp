@@ -10,11 +10,11 @@ constexpr double kFarthestStep = 0.5;
 constexpr double kStill = 1e-6;
 
 /// Points are sorted again once an edge may have moved this far, cells.
-constexpr double kTravelBetweenSorts = 0.5;
+constexpr double kTravelBetweenSorts = 0.49;
 
 /// Cells around the points that slabs and active nodes are laid out for.
 constexpr int kMargin = 1;
-static_assert(kFarthestStep + kTravelBetweenSorts <= kMargin);
+static_assert(kFarthestStep + kTravelBetweenSorts < kMargin);  // with room for rounding
 
 /// Rows of cells in a slab whose points reach that many nodes a direction: as few as will do for
 /// two slabs with one between them to share no node. The last row that the first slab reaches is

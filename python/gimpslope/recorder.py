@@ -46,6 +46,7 @@ class Recorder:
         method = setup.method.of(setup.scene.materials)
         self.path = Path(_check.instance("output", output, str | PathLike, "a path"))
         self.detail = ""
+        self._torn = False  # the state, in the middle of a step
         self._solver = simulation.solver
         self._progress = _check.flag("progress", progress)
         self._setup = setup
@@ -78,35 +79,37 @@ class Recorder:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, _: Any
     ) -> None:
-        if self._bar is not None:
-            self._bar.close()
         with uninterrupted():
-            self._end(kind, error)
+            try:
+                self._end(kind, error)
+            finally:
+                if self._bar is not None:
+                    self._bar.close()
 
     def _end(self, kind: type[BaseException] | None, error: BaseException | None) -> None:
-        self._keep(self._solver.take_rows())
-        torn = isinstance(error, Diverged) or isinstance(
-            getattr(error, "__context__", None), Diverged
-        )
-        if kind is None:
-            self._finish("finished", self.detail)
-        elif issubclass(kind, KeyboardInterrupt):
-            where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
-            self._finish("interrupted", f"stopped by Ctrl-C or SIGTERM {where}", sound=not torn)
-        else:
-            self._finish("failed", f"{kind.__name__}: {error}", sound=not torn)
+        try:
+            self._keep(self._solver.take_rows())
+        finally:
+            if kind is None:
+                self._finish("finished", self.detail)
+            elif issubclass(kind, KeyboardInterrupt):
+                where = f"in stage {STAGES[self._stage]} at {self._solver.time:.6g} s"
+                self._finish("interrupted", f"stopped by Ctrl-C or SIGTERM {where}")
+            else:
+                self._finish("failed", f"{kind.__name__}: {error}")
 
     def start(self, stage: str, duration: float) -> None:
         """Begin the rows and the bar of a stage that lasts at most `duration` seconds."""
         self._stage = STAGES.index(stage)
         if self._bar is not None:
             self._bar.close()
-        self._bar = tqdm(
-            total=duration,
-            desc=f"{stage:8}",
-            disable=not self._progress or duration == 0,
-            bar_format=_OPEN_BAR if stage == "settling" else _BAR,
-        )
+            self._bar = None
+        if self._progress and duration > 0:  # an idle bar too takes a lock between processes
+            self._bar = tqdm(
+                total=duration,
+                desc=f"{stage:8}",
+                bar_format=_OPEN_BAR if stage == "settling" else _BAR,
+            )
         self._stage_start = self._solver.time
         self._intervals = 0
         self._row()
@@ -120,6 +123,9 @@ class Recorder:
         start, processor_start = clock.perf_counter(), clock.process_time()
         try:
             self._solver.advance_through(self._due(until, rows or self._batch))
+        except Diverged:
+            self._torn = True
+            raise
         finally:
             with uninterrupted():  # rows that are taken but not kept would be lost
                 spent = clock.perf_counter() - start
@@ -205,11 +211,11 @@ class Recorder:
         """Write what is kept in memory."""
         self._writer.flush()
 
-    def _finish(self, status: str, detail: str, sound: bool = True) -> None:
-        """Write the end; of a state that is not sound, torn in the middle of a step, nothing."""
-        if sound and self._solver.steps > self._rows_end:
+    def _finish(self, status: str, detail: str) -> None:
+        """Write the end; of a torn state, nothing."""
+        if not self._torn and self._solver.steps > self._rows_end:
             self._row()
-        if sound and STAGES[self._stage] == "slide":
+        if not self._torn and STAGES[self._stage] == "slide":
             self._writer.write_final(self._solver.time, self._fields(FIELDS))
         self._writer.write_timing(
             self._seconds, self._processor_seconds, self._steps * len(self._solver)
@@ -217,7 +223,7 @@ class Recorder:
         self._writer.finish(status, detail, summarise(Run(self._writer.path)))
 
     def _show(self) -> None:
-        if self._bar is not None and not self._bar.disable:
+        if self._bar is not None:
             rate = self._steps * len(self._solver) / max(self._seconds, 1e-9) / 1e6
             self._bar.set_postfix_str(f"{rate:.1f} M point-steps/s", refresh=False)
             self._bar.update(self._solver.time - self._stage_start - self._bar.n)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -248,10 +249,21 @@ def test_the_entries_do_not_depend_on_the_threads() -> None:
 
 
 @pytest.mark.parametrize("instruction_set", _core.instruction_sets())
-def test_the_ledger_changes_nothing(instruction_set: str) -> None:
+@pytest.mark.parametrize(
+    "options",
+    [
+        {},
+        {"damping": (0.3, False)},
+        {"volumetric_strain": "cell_average"},
+        {"scheme": "usl"},
+        {"scheme": "musl"},
+    ],
+    ids=lambda options: "-".join(map(str, options.values())) or "default",
+)
+def test_the_ledger_changes_nothing(options: dict[str, Any], instruction_set: str) -> None:
+    scene = sliding() | options
     plain, accounted = (
-        solver(sliding(), ledger=ledger, instruction_set=instruction_set)
-        for ledger in (False, True)
+        solver(scene, ledger=ledger, instruction_set=instruction_set) for ledger in (False, True)
     )
     for slide in (plain, accounted):
         slide.advance(100)

@@ -14,7 +14,7 @@ from typing import Any
 import h5py
 import numpy as np
 import pytest
-from coarse_slope import SLOPE, STAGES, recording, simulate
+from coarse_slope import METHOD, SLOPE, STAGES, recording, simulate
 
 import gimpslope as gs
 from gimpslope.setup import Setup
@@ -118,7 +118,7 @@ def test_no_row_is_lost_on_its_way_to_the_file(
             raise KeyboardInterrupt
         rows = take(solver)
         if now:
-            assert len(rows["time"]) > 1
+            assert len(rows["time"]) > 0
             signal.raise_signal(signal.SIGINT)
         return rows
 
@@ -127,8 +127,51 @@ def test_no_row_is_lost_on_its_way_to_the_file(
         simulate(tmp_path / "run.h5")
     run = gs.open(tmp_path / "run.h5")
     rows = run.energy.stage("gravity")
-    assert run.status == "interrupted" and len(rows) > 8
+    assert run.status == "interrupted" and len(rows) > 4
     check_rows_without_gap(run)
+
+
+def test_a_torn_state_is_not_written_whatever_ends_the_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ctrl-C while the error of a step is on its way."""
+    take = gs.Solver.take_rows
+    simulation = Simulation(Setup(SLOPE, reference.method(time_step=2e-3), STAGES))
+
+    def interrupted(solver: gs.Solver) -> dict[str, Any]:
+        signal.raise_signal(signal.SIGINT)
+        return take(solver)
+
+    with pytest.raises(KeyboardInterrupt), recording(simulation, tmp_path / "run.h5") as recorder:
+        simulation.load(recorder)
+        simulation.settle(recorder)
+        simulation.release(recorder)
+        velocity = simulation.solver.velocity
+        velocity[7] = (0.0, 1e9)
+        simulation.solver.velocity = velocity
+        with monkeypatch.context() as patch:
+            patch.setattr(gs.Solver, "take_rows", interrupted)
+            simulation.slide(recorder)
+    run = gs.open(tmp_path / "run.h5")
+    assert run.status == "interrupted" and len(run.energy) == 1
+    assert np.isfinite(run.energy.kinetic).all() and run.final.time == 0.0
+
+
+def test_a_run_after_one_that_diverged_is_written_whole(tmp_path: Path) -> None:
+    limit = gs.Solver.of(SLOPE).stable_time_step
+    method = gs.Method(time_step=8 * limit, allow_unstable=True)
+    try:
+        simulate(tmp_path / "torn.h5", method=method)
+    except gs.Diverged:
+        with (
+            pytest.raises(RuntimeError, match="enough"),
+            recording(Simulation(Setup(SLOPE, METHOD, STAGES)), tmp_path / "run.h5") as recorder,
+        ):
+            recorder.start("slide", 1.0)
+            recorder.advance(0.0123, rows=3)
+            raise RuntimeError("enough") from None
+    run = gs.open(tmp_path / "run.h5")
+    assert run.status == "failed" and run.final.time == pytest.approx(0.0123)
 
 
 SLOW = """

@@ -442,9 +442,7 @@ def test_no_step_follows_a_failed_one() -> None:
     solver.velocity = velocity
     messages = []
     for _ in range(2):
-        with pytest.raises(
-            gs.Diverged, match=r"likely cause: the speed of point 0, 1e\+09 m/s"
-        ) as error:
+        with pytest.raises(gs.Diverged, match=r"likely cause: its speed of 1e\+09 m/s") as error:
             solver.step()
         messages.append(str(error.value))
     assert messages[0] == messages[1] and solver.steps == 0

@@ -63,10 +63,10 @@ template <class V>
 
 template <class V>
 void add(const NodeWork<V>& work, Ledger& sum) {
-  sum.damping += total(work.damping);
-  sum.external += total(work.external);
-  sum.integration += total(work.integration);
-  sum.transfer += total(work.transfer);
+  sum.damping += sum_of_lanes(work.damping);
+  sum.external += sum_of_lanes(work.external);
+  sum.integration += sum_of_lanes(work.integration);
+  sum.transfer += sum_of_lanes(work.transfer);
 }
 
 /// Energy that the reactions of the walls take from a component of a node's motion.

@@ -31,8 +31,8 @@ inline void take_forces(const View<double>& view, const StepInput& input, int bo
     BodyNode& node = nodes[k];
     const NodeStep<double> s = forces_on<double>(view.grid, node.node, input);
     keep(s, node);
-    const Pair raw(s.raw[0], s.raw[1]), all_forces(s.total(0), s.total(1));
-    const Pair pull = all_forces - Pair(s.damping[0], s.damping[1]), brought = s.mass * raw;
+    const Pair raw = pair_of(s.raw), all_forces(s.total(0), s.total(1));
+    const Pair pull = all_forces - pair_of(s.damping), brought = s.mass * raw;
     if (slides) {
       node.damped = node.meeting == Meeting::apart;
       set(node.free, raw + input.dt * s.inverse_mass * (node.damped ? all_forces : pull));
@@ -101,7 +101,7 @@ inline void release_nodes(const View<double>& view, const StepInput& input, int 
     const BodyNode& node = nodes[k];
     const double arm[2] = {node.arm[0] - held.centre[0], node.arm[1] - held.centre[1]};
     NodeStep<double> s = kept(node);
-    const Pair raw(s.raw[0], s.raw[1]);
+    const Pair raw = pair_of(s.raw);
     Pair held_velocity = velocity_at(held.velocity, held.spin, arm);
     if (slides)
       held_velocity =

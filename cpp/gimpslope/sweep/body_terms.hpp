@@ -1,7 +1,6 @@
 // What the steps of a rigid body have in common.
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 
 #include "accounts.hpp"
@@ -21,6 +20,8 @@ inline void set(double* two, const Pair& value) {
   two[0] = value[0];
   two[1] = value[1];
 }
+
+inline Pair pair_of(const Two<double>& v) { return {v[0], v[1]}; }
 
 template <std::size_t kCount>
 void copy(const double (&from)[kCount], double (&to)[kCount]) {

@@ -129,6 +129,7 @@ void averaged_force_block(const View<Real>& view, const Block& block) {
     const double* cell = cells + 4 * std::ptrdiff_t{places.of[k]};
     mean[k] = per_cell * volume[k] * (cell[2] / cell[3]);
   }
+  for (int k = n; k % 4 != 0; ++k) mean[k] = 0.0;
   scatter_stress(view, begin, n, weights, [&](int k, Quad& xx, Quad& yy) {
     const Quad change = quad(mean + k) - 0.5 * (xx + yy);
     xx += change;

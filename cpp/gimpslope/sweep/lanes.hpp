@@ -2,8 +2,6 @@
 // a quad: what is written for `V` holds for both.
 #pragma once
 
-#include <cmath>
-
 #include "../tensor.hpp"
 
 namespace gimpslope {
@@ -13,14 +11,14 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 template <class V>
 constexpr int kLanes = sizeof(V) / sizeof(double);
 
-/// What each node keeps together.
+/// The four numbers that a node keeps together.
 template <class V>
-struct Four {
+struct Components {
   V of[4];
   const V& operator[](int c) const { return of[c]; }
 };
 
-/// A vector in the plane.
+/// A vector in the plane at each node.
 template <class V>
 struct Two {
   V of[2];
@@ -30,18 +28,18 @@ struct Two {
 
 /// What the nodes from a place in a field on keep.
 template <class V>
-[[gnu::always_inline]] inline Four<V> load(const double* place) {
+[[gnu::always_inline]] inline Components<V> load(const double* place) {
   if constexpr (kLanes<V> == 1) {
     return {{place[0], place[1], place[2], place[3]}};
   } else {
-    Four<V> nodes{{quad(place), quad(place + 4), quad(place + 8), quad(place + 12)}};
+    Components<V> nodes{{quad(place), quad(place + 4), quad(place + 8), quad(place + 12)}};
     transpose(nodes.of);
     return nodes;
   }
 }
 
 template <class V>
-[[gnu::always_inline]] inline void store(Four<V> nodes, double* place) {
+[[gnu::always_inline]] inline void store(Components<V> nodes, double* place) {
   if constexpr (kLanes<V> == 1) {
     quad(place) = Quad{nodes[0], nodes[1], nodes[2], nodes[3]};
   } else {
@@ -69,8 +67,8 @@ template <class V>
 }
 
 /// Sum over the nodes.
-[[gnu::always_inline]] inline double total(double x) { return x; }
-[[gnu::always_inline]] inline double total(Quad x) { return (x[0] + x[2]) + (x[1] + x[3]); }
+[[gnu::always_inline]] inline double sum_of_lanes(double x) { return x; }
+[[gnu::always_inline]] inline double sum_of_lanes(Quad x) { return (x[0] + x[2]) + (x[1] + x[3]); }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
 }  // namespace gimpslope

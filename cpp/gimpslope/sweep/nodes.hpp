@@ -22,8 +22,8 @@ void for_each_wall(const GridView& g, int column, int row, Two<double>& v, Visit
   if (row >= g.wall[top]) visit(top, 1.0, v[1], v[0]);
 }
 
-/// Calls inner(V, node) for the active nodes of a row that no wall touches, fours where they are
-/// left, and wall(node, column) for the others.
+/// Calls inner(V, node) for the active nodes of a row that no wall touches, for four at a time as
+/// long as there are four, and wall(node, column) for the others.
 template <class Inner, class AtWall>
 [[gnu::always_inline]] inline void for_each_node(const GridView& g, int row, Inner inner,
                                                  AtWall wall) {
@@ -45,7 +45,7 @@ template <class Inner, class AtWall>
 /// Mean velocity of the points at nodes (paper eq. 20), of {m, m, m vx, m vy}.
 template <class V>
 [[gnu::always_inline]] inline Two<V> velocity_of(const double* momentum) {
-  const Four<V> m = load<V>(momentum);
+  const Components<V> m = load<V>(momentum);
   const V inverse = inverse_of(m[0]);
   return {{inverse * m[2], inverse * m[3]}};
 }
@@ -68,7 +68,8 @@ template <class V>
 }
 
 /// Velocity of the nodes of a row within the walls; begins the row's ledger where one is kept. Of a
-/// copy of the grid's view the compiler knows that no store to a node changes it.
+/// copy of the grid's view the compiler knows that no store to a node changes it. With kBare
+/// strains are not averaged over cells.
 template <bool kBare>
 void start_nodes(const GridView& grid, int row, Ledger* ledger) {
   GridView g = grid;
@@ -102,8 +103,8 @@ void start_nodes(const GridView& grid, int row, Ledger* ledger) {
 template <class V>
 [[gnu::always_inline]] inline NodeStep<V> forces_on(const GridView& g, int node,
                                                     const StepInput& step) {
-  const Four<V> m = load<V>(g.momentum + 4 * node), f = load<V>(g.force + 4 * node);
-  const Four<V> shown = load<V>(g.velocity + 4 * node);
+  const Components<V> m = load<V>(g.momentum + 4 * node), f = load<V>(g.force + 4 * node);
+  const Components<V> shown = load<V>(g.velocity + 4 * node);
   const double gravity[2] = {step.gravity_x, step.gravity_y};
   NodeStep<V> s;
   s.mass = m[0];
@@ -116,7 +117,7 @@ template <class V>
     s.body[c] = s.damping[c] = V{};
   }
   if (g.body != nullptr) {
-    const Four<V> body = load<V>(g.body + 4 * node);
+    const Components<V> body = load<V>(g.body + 4 * node);
     for (int c = 0; c < 2; ++c) s.body[c] = body[c];
   }
   if (step.local_damping != 0.0)
@@ -131,7 +132,8 @@ enum class Afterwards { none, shown, forces_kept };
 
 /// Momentum of the nodes of a row (paper eq. 13) with the walls' reactions, and what a point takes
 /// from it: dt v and alpha v + (1 - alpha) times the change of v. Clears mass, momentum and forces,
-/// and adds to the row's ledger where one is kept.
+/// and adds to the row's ledger where one is kept. With kBare there are no body forces, no soil
+/// along rigid bodies and no local damping.
 template <bool kBare, bool kLedger, Afterwards kAfterwards>
 void finish_nodes(const GridView& grid, int row, const StepInput& input, Ledger* ledger) {
   GridView g = grid;  // see start_nodes

@@ -13,9 +13,9 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 inline void renew_nodes(const GridView& g, int row, const StepInput& step, Ledger* ledger) {
   const auto set = [&]<class V>(int node, const Two<V>& v) {
     if (ledger != nullptr) {
-      const Four<V> f = load<V>(g.force + 4 * node), moved = load<V>(g.update + 4 * node);
+      const Components<V> f = load<V>(g.force + 4 * node), moved = load<V>(g.update + 4 * node);
       for (int c = 0; c < 2; ++c)
-        ledger->transfer += total((f[2 * c] + f[2 * c + 1]) * (step.dt * v[c] - moved[c]));
+        ledger->transfer += sum_of_lanes((f[2 * c] + f[2 * c + 1]) * (step.dt * v[c] - moved[c]));
     }
     show_velocity(g, node, v);
     clear<V>(g.momentum + 4 * node);

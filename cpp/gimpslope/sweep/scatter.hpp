@@ -80,10 +80,10 @@ void scatter_momentum(const View<Real>& view, int begin, int n,
   const Real* vy = view.points.vy + begin;
   const Real* mass = view.points.mass + begin;
   PointQuads momenta;
-  for (int k = 0; k < n; k += 4) {
-    const Quad m = four(mass + k);
-    momenta.put(k, {m, m, m * four(vx + k), m * four(vy + k)});
-  }
+  by_fours(n, [&](int k, auto count) {
+    const Quad m = four(mass + k, count);
+    momenta.put(k, {m, m, m * four(vx + k, count), m * four(vy + k, count)});
+  });
   NodeSums<Shape> nodes(view.grid.momentum, view.grid.stride);
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);

@@ -118,8 +118,8 @@ void apply_law(const View<Real>& view, const Block& block, const Law& law, const
   if (margin == kUnknown) margin = yield_margin(plastic, view.points, begin, n);
 }
 
-/// Forces at the nodes: of the stresses, of whose -V / h times xx and yy change(k, xx, yy) makes
-/// others for points k to k + 3, and body forces.
+/// Forces at the nodes: body forces, and those of the stresses, after change(k, xx, yy) has put
+/// others in place of -V / h times the normal stresses of points k to k + 3.
 template <class Shape, class Real, class Change>
 [[gnu::always_inline]] inline void scatter_stress(const View<Real>& view, int begin, int n,
                                                   const Weights<Shape, Need::gradients>& weights,
@@ -129,13 +129,13 @@ template <class Shape, class Real, class Change>
   const Real *stress_yy = p.stress_yy + begin, *stress_xy = p.stress_xy + begin;
   const double per_cell = -1.0 / view.grid.cell;
   PointQuads forces;
-  for (int k = 0; k < n; k += 4) {
-    const Quad factor = per_cell * four(volume + k);
-    Quad xx = factor * four(stress_xx + k), yy = factor * four(stress_yy + k);
-    const Quad xy = factor * four(stress_xy + k);
+  by_fours(n, [&](int k, auto count) {
+    const Quad factor = per_cell * four(volume + k, count);
+    Quad xx = factor * four(stress_xx + k, count), yy = factor * four(stress_yy + k, count);
+    const Quad xy = factor * four(stress_xy + k, count);
     change(k, xx, yy);
     forces.put(k, {xx, xy, xy, yy});
-  }
+  });
   scatter_forces(view, n, weights, forces);
   if (p.body_force[0] != nullptr) scatter_body_forces(view, begin, n, weights);
 }

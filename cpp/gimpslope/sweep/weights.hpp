@@ -99,8 +99,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
   const double per_cell = 1.0 / grid.cell;
   constexpr bool relative = PointsView<Real>::relative;
   const std::int32_t* home = relative ? view.points.home + begin : nullptr;
-  const double origin_x = (relative ? 0.0 : grid.left * per_cell) + Shape::behind + 1.0;
-  const double origin_y = (relative ? 0.0 : grid.bottom * per_cell) + Shape::behind + 1.0;
+  const double origin_x = (relative ? 0.0 : grid.left * per_cell) + Shape::behind;
+  const double origin_y = (relative ? 0.0 : grid.bottom * per_cell) + Shape::behind;
   const double stride = grid.stride;
   const double common = Shape::widest > 0.0 ? 2.0 * view.half_length * per_cell : 0.0;
   const double common_inverse = Shape::widest > 0.0 ? 1.0 / common : 0.0;
@@ -114,24 +114,27 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
       inverse_x = 1.0 / width_x;
       inverse_y = 1.0 / width_y;
     }
-    const double x = px[k] * per_cell - (origin_x + 0.5 * width_x);
-    const double y = py[k] * per_cell - (origin_y + 0.5 * width_y);
-    const double column = std::ceil(x), row = std::ceil(y);
-    out.first[k] = static_cast<int>(row * stride + column);  // exact: under 2^53
+    const double left = origin_x + 0.5 * width_x, below = origin_y + 0.5 * width_y;
+    // Of the second node. Positions are scaled twice, for additions are what runs out.
+    const double column = std::trunc(px[k] * per_cell - (left - 1.0));
+    const double row = std::trunc(py[k] * per_cell - (below - 1.0));
+    const double room_x = column - (px[k] * per_cell - left);
+    const double room_y = row - (py[k] * per_cell - below);
+    out.first[k] = static_cast<int>(row * stride + column) - (grid.stride + 1);  // exact: < 2^53
     if constexpr (relative) out.first[k] += home[k];
 
     double w[Shape::nodes], d[Shape::nodes];
-    Shape::evaluate(column - x, width_x, inverse_x, w, d);
+    Shape::evaluate(room_x, width_x, inverse_x, w, d);
     if constexpr (ChangesAtWalls<Shape>) {
-      const int i = static_cast<int>(column) + (relative ? home[k] % grid.stride : 0);
-      Shape::at_walls(column - x, i == grid.wall[Side::left] - 1,
+      const int i = static_cast<int>(column) - 1 + (relative ? home[k] % grid.stride : 0);
+      Shape::at_walls(room_x, i == grid.wall[Side::left] - 1,
                       i + Shape::nodes - 2 == grid.wall[Side::right], w, d);
     }
     for (int i = 0; i < Shape::nodes; ++i) out.set_x(i, k, w[i], d[i]);
-    Shape::evaluate(row - y, width_y, inverse_y, w, d);
+    Shape::evaluate(room_y, width_y, inverse_y, w, d);
     if constexpr (ChangesAtWalls<Shape>) {
-      const int j = static_cast<int>(row) + (relative ? home[k] / grid.stride : 0);
-      Shape::at_walls(row - y, j == grid.wall[Side::bottom] - 1,
+      const int j = static_cast<int>(row) - 1 + (relative ? home[k] / grid.stride : 0);
+      Shape::at_walls(room_y, j == grid.wall[Side::bottom] - 1,
                       j + Shape::nodes - 2 == grid.wall[Side::top], w, d);
     }
     for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);
