@@ -56,7 +56,7 @@ struct Usf {
         Report report;
         report.ledger = reports[slab].ledger;
         report.energies = reports[slab].energies;
-        for_each_block(view, slab, [&](const Block& block) {
+        for_each_block(view, slab, moved(view.points), [&](const Block& block) {
           if (report.lost < 0 && !is_rigid(view, block))
             move_block<Shape, kOwnDomain>(view, input, block, report);
         });
@@ -82,7 +82,7 @@ struct Usf {
     const auto stresses = [&](int slab) {
       Ledger ledger;
       Energies energies;
-      for_each_block(view, slab, [&](const Block& block) {
+      for_each_block(view, slab, strained(view.points), [&](const Block& block) {
         if (is_rigid(view, block)) return;
         if (averaged) {
           averaged_stress_block(view, input, block, ledger);
@@ -106,7 +106,7 @@ struct Usf {
     });
     for_each_slab(view, thread, stresses);
     for_each_slab(view, thread, [&](int slab) {
-      for_each_block(view, slab, [&](const Block& block) {
+      for_each_block(view, slab, strained(view.points), [&](const Block& block) {
         if (!is_rigid(view, block)) averaged_force_block<Shape, kOwnDomain>(view, block);
       });
     });

@@ -1,6 +1,8 @@
 // Loops that a team takes together.
 #pragma once
 
+#include <array>
+
 #include "../team.hpp"
 #include "../view.hpp"
 
@@ -63,6 +65,35 @@ void for_each_row(const View<Real>& view, int thread, Work work) {
 template <class Work, class Real>
 void for_each_block(const View<Real>& view, int slab, Work work) {
   for (int b = view.slabs[slab].begin; b < view.slabs[slab].end; ++b) work(view.blocks[b]);
+}
+
+/// Blocks whose points fit into the last cache of most processors, 20 MB with their nodes.
+constexpr int kBlocksInCache = 2048;
+
+/// The same; beyond that many blocks these properties of the next one's points are asked for
+/// meanwhile: they come from memory, from more places than the processor follows by itself.
+template <class Properties, class Work, class Real>
+void for_each_block(const View<Real>& view, int slab, const Properties& needed, Work work) {
+  constexpr int line = kCacheLine / sizeof(Real), to_second_cache = 2;
+  const bool far = view.slabs[view.slab_count - 1].end > kBlocksInCache;
+  for (int b = view.slabs[slab].begin; b < view.slabs[slab].end; ++b) {
+    if (far && b + 1 < view.slabs[slab].end)
+      for (const Real* property : needed)
+        for (int k = view.blocks[b + 1].begin; k < view.blocks[b + 1].end; k += line)
+          __builtin_prefetch(property + k, 1, to_second_cache);
+    work(view.blocks[b]);
+  }
+}
+
+/// What the first sweep of a step and the second one read of every point.
+template <class Real>
+std::array<const Real*, 8> strained(const PointsView<Real>& p) {
+  return {p.x, p.y, p.volume, p.stress_xx, p.stress_yy, p.stress_zz, p.stress_xy, p.plastic_strain};
+}
+
+template <class Real>
+std::array<const Real*, 5> moved(const PointsView<Real>& p) {
+  return {p.x, p.y, p.vx, p.vy, p.mass};
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET
