@@ -8,6 +8,7 @@ import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from types import FrameType
+from typing import Any
 
 BOTH = (signal.SIGINT, signal.SIGTERM)
 
@@ -86,9 +87,25 @@ def _answered(
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = {number: signal.signal(number, answer) for number in numbers}
+    before: dict[signal.Signals, Any] = {}
     try:
+        with _waiting():
+            for number in numbers:
+                before[number] = signal.signal(number, answer)
         yield
     finally:
-        for number, old in before.items():
-            signal.signal(number, old or signal.SIG_DFL)
+        with _waiting():
+            for number, old in before.items():
+                signal.signal(number, old or signal.SIG_DFL)
+
+
+@contextmanager
+def _waiting() -> Iterator[None]:
+    """Ctrl-C and SIGTERM wait until the block ends, or else one that comes between two answers is
+    given by the wrong one of them."""
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    try:
+        signal.pthread_sigmask(signal.SIG_BLOCK, BOTH)  # what came before is answered here
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
