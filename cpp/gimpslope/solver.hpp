@@ -126,6 +126,7 @@ class Solver {
   [[noreturn]] void fail(const std::string& what, std::int64_t point);
   [[noreturn]] void fail_at(int lost, double dt);
   void follow_width(double width);
+  [[noreturn]] void fail_too_wide(double allowed);
   void keep_body_forces();
   void damp_at_peak();
   double force_from_rest(double dt);

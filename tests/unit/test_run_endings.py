@@ -17,6 +17,7 @@ import pytest
 from coarse_slope import METHOD, SLOPE, STAGES, recording, simulate
 
 import gimpslope as gs
+from gimpslope.io.atomic import _StagedFile
 from gimpslope.setup import Setup
 from gimpslope.simulation import Simulation
 from gimpslope.studies import reference
@@ -88,10 +89,10 @@ def test_diverging_run_says_where_and_why(tmp_path: Path) -> None:
     assert len(rows) > 0 and error.time - rows.time[-1] <= max(0.005, 8 * limit)
 
 
-def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
+def slide_with_a_thrown_point(path: Path, raised: type[BaseException]) -> gs.Run:
     # A Courant number would follow the speed: the step is fixed.
     simulation = Simulation(Setup(SLOPE, reference.method(time_step=2e-3), STAGES))
-    with pytest.raises(gs.Diverged), recording(simulation, tmp_path / "run.h5") as recorder:
+    with pytest.raises(raised), recording(simulation, path) as recorder:
         simulation.load(recorder)
         simulation.settle(recorder)
         simulation.release(recorder)
@@ -99,7 +100,11 @@ def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
         velocity[7] = (0.0, 1e9)
         simulation.solver.velocity = velocity
         simulation.slide(recorder)
-    run = gs.open(tmp_path / "run.h5")
+    return gs.open(path)
+
+
+def test_diverging_slide_keeps_its_last_state(tmp_path: Path) -> None:
+    run = slide_with_a_thrown_point(tmp_path / "run.h5", gs.Diverged)
     assert run.status == "failed" and run.trigger
     assert len(run.final.position) == SLOPE.n_points
     assert len(run.energy) == 1 and run.times.tolist() == [0.0]
@@ -135,26 +140,41 @@ def test_a_torn_state_is_not_written_whatever_ends_the_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Ctrl-C while the error of a step is on its way."""
-    take = gs.Solver.take_rows
-    simulation = Simulation(Setup(SLOPE, reference.method(time_step=2e-3), STAGES))
+    advance, take = gs.Solver.advance_through, gs.Solver.take_rows
+    diverged = []
+
+    def noted(solver: gs.Solver, times: Any) -> None:
+        try:
+            advance(solver, times)
+        except gs.Diverged as error:
+            diverged.append(error)
+            raise
 
     def interrupted(solver: gs.Solver) -> dict[str, Any]:
-        signal.raise_signal(signal.SIGINT)
+        if diverged:
+            signal.raise_signal(signal.SIGINT)
         return take(solver)
 
-    with pytest.raises(KeyboardInterrupt), recording(simulation, tmp_path / "run.h5") as recorder:
-        simulation.load(recorder)
-        simulation.settle(recorder)
-        simulation.release(recorder)
-        velocity = simulation.solver.velocity
-        velocity[7] = (0.0, 1e9)
-        simulation.solver.velocity = velocity
-        with monkeypatch.context() as patch:
-            patch.setattr(gs.Solver, "take_rows", interrupted)
-            simulation.slide(recorder)
-    run = gs.open(tmp_path / "run.h5")
-    assert run.status == "interrupted" and len(run.energy) == 1
+    monkeypatch.setattr(gs.Solver, "advance_through", noted)
+    monkeypatch.setattr(gs.Solver, "take_rows", interrupted)
+    run = slide_with_a_thrown_point(tmp_path / "run.h5", KeyboardInterrupt)
+    assert run.status == "interrupted" and len(run.energy) == 1 and len(diverged) == 1
     assert np.isfinite(run.energy.kinetic).all() and run.final.time == 0.0
+
+
+def test_ctrl_c_within_hdf5_is_a_ctrl_c(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """HDF5 asks the file object for its methods, and takes one that raises for one that lacks."""
+    flush, calls = _StagedFile.flush, iter(range(100))
+
+    def interrupted(file: _StagedFile) -> None:
+        if next(calls) == 0:
+            signal.raise_signal(signal.SIGINT)
+        flush(file)
+
+    monkeypatch.setattr(_StagedFile, "flush", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        simulate(tmp_path / "run.h5")
+    assert gs.open(tmp_path / "run.h5").status == "running" and next(calls) > 0
 
 
 def test_a_run_after_one_that_diverged_is_written_whole(tmp_path: Path) -> None:

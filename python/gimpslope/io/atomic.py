@@ -23,6 +23,8 @@ from typing import TYPE_CHECKING
 
 import h5py
 
+from ..interrupts import uninterrupted
+
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer, WriteableBuffer
 
@@ -32,8 +34,9 @@ def change(path: Path) -> Iterator[h5py.File]:
     """Open the HDF5 file at `path` for appending; its changes are written when the block ends.
 
     The file is made when it does not exist or is empty. When the block raises, nothing is written.
+    Ctrl-C and SIGTERM wait until then: HDF5 turns one that comes in its calls into another error.
     """
-    with path.open("r+b" if path.exists() else "w+b", buffering=0) as disk:
+    with uninterrupted(), path.open("r+b" if path.exists() else "w+b", buffering=0) as disk:
         staged = _StagedFile(disk)
         mode = "r+" if staged.size else "w"
         with h5py.File(staged, mode, libver="earliest") as file:
