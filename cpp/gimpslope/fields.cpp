@@ -62,8 +62,9 @@ double Solver::release_stress() {
     const Law& law = laws_[p.material[k]];
     if (law.kind != LawKind::drucker_prager) continue;
     const Stress before = stress_of(p, k);
-    Stress after = before;
-    return_to_surface(law.drucker_prager, after, p.plastic_strain[0][k]);
+    Mohr circle = mohr(before);
+    if (!return_to_surface(law.drucker_prager, circle, p.plastic_strain[0][k])) continue;
+    const Stress after = stress(circle);
     p.stress[0][k] = after.xx;
     p.stress[1][k] = after.yy;
     p.stress[2][k] = after.zz;

@@ -68,13 +68,14 @@ void deform(const PlainView& g, PlainPoint& p, double dt) {
   const double grown = strain.xx + strain.yy;
   p.volume *= g.volume_update == VolumeUpdate::linear ? 1.0 + grown : std::exp(grown);
   const double turn = dt * (yx - xy);
-  Stress stress = turned({p.sxx, p.syy, p.szz, p.sxy}, std::cos(turn), std::sin(turn));
+  Mohr circle = turned(mohr({p.sxx, p.syy, p.szz, p.sxy}), std::cos(turn), std::sin(turn));
   with_constants(g.laws[p.material],
-                 [&](const auto& law) { update(law, stress, strain, p.plastic_strain); });
-  p.sxx = stress.xx;
-  p.syy = stress.yy;
-  p.szz = stress.zz;
-  p.sxy = stress.xy;
+                 [&](const auto& law) { update(law, circle, strain, p.plastic_strain); });
+  const Stress after = stress(circle);
+  p.sxx = after.xx;
+  p.syy = after.yy;
+  p.szz = after.zz;
+  p.sxy = after.xy;
 }
 
 }  // namespace

@@ -52,10 +52,8 @@ inline void rotation(double angle, double largest, double& cosine, double& sine)
 }
 
 /// A stress turned with the material, given cosine and sine of twice the angle.
-inline Stress turned(const Stress& s, double cosine, double sine) {
-  const double middle = 0.5 * (s.xx + s.yy), half = 0.5 * (s.xx - s.yy);
-  const double normal = half * cosine - s.xy * sine;
-  return {middle + normal, middle - normal, s.zz, half * sine + s.xy * cosine};
+inline Mohr turned(const Mohr& s, double cosine, double sine) {
+  return {s.centre, s.half * cosine - s.xy * sine, s.zz, s.half * sine + s.xy * cosine};
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

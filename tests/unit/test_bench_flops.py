@@ -50,9 +50,8 @@ def gimp(
     room = column - (x * per_cell - origin)
     a = room.smaller(width)
     b = width - a
-    before, after = a * (2 * room - a), b * b
-    middle = 1 - half_inverse * (before + after)
-    return [half_inverse * before, middle, half_inverse * after], lambda: a * inverse - b * inverse
+    first, last = half_inverse * (a * (2 * room - a)), half_inverse * (b * b)
+    return [first, 1 - first - last, last], lambda: a * inverse - b * inverse
 
 
 def ugimp() -> tuple[list[Number], Callable[[], object]]:
@@ -93,29 +92,30 @@ def rotation() -> None:
     a = angle * angle
     cosine = 1 + a * (-1 / 2 + a * (1 / 24 + a * (-1 / 720)))
     sine = angle * (1 + a * (-1 / 6 + a * (1 / 120 + a * (-1 / 5040))))
-    middle, half = 0.5 * (xx + yy), 0.5 * (xx - yy)
-    normal = half * cosine - xy * sine
-    middle + normal, middle - normal, half * sine + xy * cosine
+    0.5 * (xx + yy)
+    half = 0.5 * (xx - yy)
+    half * cosine - xy * sine, half * sine + xy * cosine
 
 
 def elastic_trial() -> None:
-    lame, twice_shear, xx, yy, zz, xy, exx, eyy, exy = numbers(9)
-    volumetric = lame * (exx + eyy)
-    xx + (volumetric + twice_shear * exx), yy + (volumetric + twice_shear * eyy)
-    zz + volumetric, xy + twice_shear * exy
+    lame, lame_and_shear, shear, twice_shear, centre, half, zz, xy, exx, eyy, exy = numbers(11)
+    grown = exx + eyy
+    centre + lame_and_shear * grown, half + shear * (exx - eyy)
+    zz + lame * grown, xy + twice_shear * exy
 
 
 def return_mapping() -> None:
-    xx, yy, zz, xy, eta, k, flow, tension, per_shear, plastic = numbers(10)
-    trial_mean = (xx + yy + zz) * (1 / 3)
-    xx, yy, zz = xx - trial_mean, yy - trial_mean, zz - trial_mean
-    trial = (0.5 * (xx * xx + yy * yy + zz * zz) + xy * xy).root()
-    overshoot = trial + eta * trial_mean - k
-    mean = (trial_mean - flow * overshoot.larger()).smaller(tension)
-    limit = (k - eta * mean).larger()
-    root_j2 = trial.smaller(limit)
-    scale = root_j2 / trial.larger()
-    mean + scale * xx, mean + scale * yy, mean + scale * zz, xy * scale
+    centre, half, zz, xy, eta, k, flow, tension, per_shear, plastic, tiny = numbers(11)
+    beyond = (centre - zz) * (1 / 3)
+    trial_mean = centre - beyond
+    trial = ((half * half + xy * xy) + 3 * beyond * beyond).root()
+    overshoot = trial + (eta * trial_mean - k)
+    mean = (trial_mean - flow * overshoot).smaller(trial_mean).smaller(tension)
+    root_j2 = trial.smaller(k - eta * mean)
+    scale = root_j2 / (trial + tiny)
+    centre, half = mean + scale * beyond, half * scale
+    mean - 2 * scale * beyond, xy * scale
+    centre + half, centre - half
     plastic + per_shear * (trial - root_j2)
 
 

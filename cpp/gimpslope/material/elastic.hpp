@@ -10,6 +10,12 @@ struct Stress {
   double xx, yy, zz, xy;
 };
 
+/// The same by Mohr's circle in the plane: its centre and half the difference of xx and yy, which
+/// turns with xy alone.
+struct Mohr {
+  double centre, half, zz, xy;
+};
+
 /// Strain increment in plane strain; xy is the tensor component.
 struct Strain {
   double xx, yy, xy;
@@ -21,6 +27,9 @@ struct Elastic {
 };
 
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
+
+inline Mohr mohr(const Stress& s) { return {0.5 * (s.xx + s.yy), 0.5 * (s.xx - s.yy), s.zz, s.xy}; }
+inline Stress stress(const Mohr& s) { return {s.centre + s.half, s.centre - s.half, s.zz, s.xy}; }
 
 /// What the product of two stresses with the compliance in between needs, 1/Pa.
 struct Compliance {
@@ -41,12 +50,12 @@ inline double product(const Compliance& c, const Stress& a, const Stress& b) {
 }
 
 /// Adds the elastic increment to a stress that has turned with the material already.
-inline void update(const Elastic& law, Stress& stress, const Strain& increment,
+inline void update(const Elastic& law, Mohr& stress, const Strain& increment,
                    double& /*plastic_strain*/) {
-  const double volumetric = law.lame * (increment.xx + increment.yy);
-  stress.xx += volumetric + 2.0 * law.shear * increment.xx;
-  stress.yy += volumetric + 2.0 * law.shear * increment.yy;
-  stress.zz += volumetric;
+  const double grown = increment.xx + increment.yy;
+  stress.centre += (law.lame + law.shear) * grown;
+  stress.half += law.shear * (increment.xx - increment.yy);
+  stress.zz += law.lame * grown;
   stress.xy += 2.0 * law.shear * increment.xy;
 }
 

@@ -26,13 +26,12 @@ struct Gimp {
                        double (&d)[nodes]) {
     const double a = room < width ? room : width;
     const double b = width - a;
-    const double before = a * (2.0 * room - a), after = b * b;
     d[0] = a * -inverse;
     d[2] = b * inverse;
     d[1] = a * inverse - d[2];
-    w[0] = 0.5 * inverse * before;
-    w[2] = 0.5 * inverse * after;
-    w[1] = 1.0 - 0.5 * inverse * (before + after);
+    w[0] = 0.5 * inverse * (a * (2.0 * room - a));
+    w[2] = 0.5 * inverse * (b * b);
+    w[1] = 1.0 - w[0] - w[2];
   }
 };
 

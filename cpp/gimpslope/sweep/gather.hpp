@@ -25,7 +25,7 @@ template <class Shape, class X, class Y>
 
 /// Sums of a field at the n points of a block, four points at a time in step, which keeps the
 /// processor busier than one after the other: calls take(k, sums) with the four components of
-/// points k to k + 3. What goes beyond the last point is zero.
+/// points k to k + 3, beyond the last one those of the last one.
 template <class Shape, class Weights, class Take>
 [[gnu::always_inline]] inline void gather_block(const double* field, std::ptrdiff_t stride, int n,
                                                 const Weights& weights, Take take) {

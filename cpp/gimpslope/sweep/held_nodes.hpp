@@ -61,7 +61,7 @@ void add_shares(const View<double>& view, int body, const int (&corner)[2], doub
           double* node = first + 3 * (j * all.window + i);
           node[0] += share * weights.value_x(i, k) * weights.value_y(j, k);
           if constexpr (kNeed == Need::gradients) {
-            const double *along_x = weights.pair_x(i, k), *along_y = weights.pair_y(j, k);
+            const Quad along_x = weights.pairs_x(i, k), along_y = weights.pairs_y(j, k);
             node[1] += share * along_x[0] * along_y[0];
             node[2] += share * along_x[1] * along_y[1];
           }

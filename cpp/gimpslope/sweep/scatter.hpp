@@ -110,11 +110,11 @@ void scatter_soil(const View<Real>& view, int begin, int n,
     nodes.add(
         Quad{v, v, v, 0.0},
         [&](int i) {
-          const double* x = weights.pair_x(i, k);
+          const Quad x = weights.pairs_x(i, k);
           return Quad{x[0], x[1], x[1], 0.0};
         },
         [&](int j) {
-          const double* y = weights.pair_y(j, k);
+          const Quad y = weights.pairs_y(j, k);
           return Quad{y[0], y[1], y[0], 0.0};
         });
   }
@@ -145,8 +145,8 @@ void scatter_forces(const View<Real>& view, int n, const Weights<Shape, Need::gr
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
     nodes.add(
-        forces.of(k), [&](int i) { return twice(weights.pair_x(i, k)); },
-        [&](int j) { return twice(weights.pair_y(j, k)); });
+        forces.of(k), [&](int i) { return weights.pairs_x(i, k); },
+        [&](int j) { return weights.pairs_y(j, k); });
   }
 }
 

@@ -92,13 +92,14 @@ void update_stress(const View<Real>& view, int begin, int n, const Constants& la
   const Constants constants = law;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
-    Stress stress = turned({xx[k], yy[k], zz[k], xy[k]}, s.cosine[k], s.sine[k]);
+    Mohr circle = turned(mohr({xx[k], yy[k], zz[k], xy[k]}), s.cosine[k], s.sine[k]);
     double strain = plastic_strain[k];
-    update(constants, stress, {s.xx[k], s.yy[k], s.xy[k]}, strain);
-    xx[k] = stress.xx;
-    yy[k] = stress.yy;
-    zz[k] = stress.zz;
-    xy[k] = stress.xy;
+    update(constants, circle, {s.xx[k], s.yy[k], s.xy[k]}, strain);
+    const Stress after = stress(circle);
+    xx[k] = after.xx;
+    yy[k] = after.yy;
+    zz[k] = after.zz;
+    xy[k] = after.xy;
     plastic_strain[k] = strain;
   }
 }

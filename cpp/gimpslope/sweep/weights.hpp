@@ -13,8 +13,7 @@ inline namespace GIMPSLOPE_INSTRUCTION_SET {
 enum class Need { values, gradients };  // gradients: values and derivatives
 
 /// Shape functions of the points of a block along both axes, one array a node. Derivatives are
-/// times the cell size. The points are made up to a multiple of four: those that are not there have
-/// nodes of the last one, with weights of zero.
+/// times the cell size. The points are made up to a multiple of four with the last one again.
 template <class Shape, Need kNeed>
 struct Weights;
 
@@ -27,6 +26,13 @@ struct Weights<Shape, Need::values> {
   double value_y(int j, int k) const { return y[j][k]; }
   void set_x(int i, int k, double value, double /*derivative*/) { x[i][k] = value; }
   void set_y(int j, int k, double value, double /*derivative*/) { y[j][k] = value; }
+  void repeat(int from, int k) {
+    first[k] = first[from];
+    for (int i = 0; i < Shape::nodes; ++i) {
+      x[i][k] = x[i][from];
+      y[i][k] = y[i][from];
+    }
+  }
 
   /// Weights of points k to k + 3: those along x come by shuffles, those along y by loads, to keep
   /// both units of the processor busy.
@@ -46,23 +52,45 @@ struct Weights<Shape, Need::values> {
 };
 
 /// {derivative, value} along x and {value, derivative} along y, so that their products are those
-/// that a gradient takes.
+/// that a gradient takes. The second node has what the others leave, for values add up to one and
+/// derivatives to zero: an addition costs less than a place in memory.
 template <class Shape>
 struct Weights<Shape, Need::gradients> {
-  alignas(kCacheLine) int first[kBlock];
-  double x[Shape::nodes][2 * kBlock], y[Shape::nodes][2 * kBlock];
+  static constexpr int kRest = 1, kOthers = Shape::nodes - 1;
 
-  double value_x(int i, int k) const { return x[i][2 * k + 1]; }
-  double value_y(int j, int k) const { return y[j][2 * k]; }
-  const double* pair_x(int i, int k) const { return x[i] + 2 * k; }
-  const double* pair_y(int j, int k) const { return y[j] + 2 * k; }
+  alignas(kCacheLine) int first[kBlock];
+  double x[kOthers][2 * kBlock], y[kOthers][2 * kBlock];
+
+  [[gnu::always_inline]] double value_x(int i, int k) const {
+    return weight(i, 1.0, [&](int other) { return x[other][2 * k + 1]; });
+  }
+  [[gnu::always_inline]] double value_y(int j, int k) const {
+    return weight(j, 1.0, [&](int other) { return y[other][2 * k]; });
+  }
+  /// The pair twice.
+  [[gnu::always_inline]] Quad pairs_x(int i, int k) const {
+    return weight(i, kSumX, [&](int other) { return twice(x[other] + 2 * k); });
+  }
+  [[gnu::always_inline]] Quad pairs_y(int j, int k) const {
+    return weight(j, kSumY, [&](int other) { return twice(y[other] + 2 * k); });
+  }
   void set_x(int i, int k, double value, double derivative) {
-    x[i][2 * k] = derivative;
-    x[i][2 * k + 1] = value;
+    if (i == kRest) return;
+    x[other(i)][2 * k] = derivative;
+    x[other(i)][2 * k + 1] = value;
   }
   void set_y(int j, int k, double value, double derivative) {
-    y[j][2 * k] = value;
-    y[j][2 * k + 1] = derivative;
+    if (j == kRest) return;
+    y[other(j)][2 * k] = value;
+    y[other(j)][2 * k + 1] = derivative;
+  }
+  void repeat(int from, int k) {
+    first[k] = first[from];
+    for (int i = 0; i < kOthers; ++i)
+      for (int c = 0; c < 2; ++c) {
+        x[i][2 * k + c] = x[i][2 * from + c];
+        y[i][2 * k + c] = y[i][2 * from + c];
+      }
   }
 
   /// Pairs of points k to k + 3, along x by loads and along y by shuffles.
@@ -70,7 +98,7 @@ struct Weights<Shape, Need::gradients> {
     const Weights& all;
     const int first;
     Quad up[Shape::nodes][2];
-    [[gnu::always_inline]] Quad x(int i, int m) const { return twice(all.pair_x(i, first + m)); }
+    [[gnu::always_inline]] Quad x(int i, int m) const { return all.pairs_x(i, first + m); }
     [[gnu::always_inline]] Quad y(int j, int m) const { return spread_pair(up[j][m / 2], m % 2); }
   };
   [[gnu::always_inline]] FourPoints four(int k) const {
@@ -78,8 +106,23 @@ struct Weights<Shape, Need::gradients> {
 #pragma GCC unroll 8
     for (int j = 0; j < Shape::nodes; ++j)
 #pragma GCC unroll 8
-      for (int m = 0; m < 2; ++m) w.up[j][m] = quad(y[j] + 2 * k + 4 * m);
+      for (int m = 0; m < 2; ++m)
+        w.up[j][m] = weight(j, kSumY, [&](int other) { return quad(y[other] + 2 * k + 4 * m); });
     return w;
+  }
+
+ private:
+  static constexpr Quad kSumX{0.0, 1.0, 0.0, 1.0}, kSumY{1.0, 0.0, 1.0, 0.0};
+
+  static constexpr int other(int node) { return node < kRest ? node : node - 1; }
+
+  /// What of(other(node)) is, or what the others leave of their `sum`.
+  template <class Number, class Of>
+  [[gnu::always_inline]] static Number weight(int node, Number sum, Of of) {
+    if (node != kRest) return of(other(node));
+#pragma GCC unroll 8
+    for (int k = 0; k < kOthers; ++k) sum -= of(k);
+    return sum;
   }
 };
 
@@ -139,13 +182,7 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
     }
     for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);
   }
-  for (int k = n; k % 4 != 0; ++k) {
-    out.first[k] = out.first[n - 1];
-    for (int i = 0; i < Shape::nodes; ++i) {
-      out.set_x(i, k, 0.0, 0.0);
-      out.set_y(i, k, 0.0, 0.0);
-    }
-  }
+  for (int k = n; k % 4 != 0; ++k) out.repeat(n - 1, k);
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

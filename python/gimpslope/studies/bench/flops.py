@@ -26,19 +26,19 @@ _PLACE = {"linear": 3, "ugimp": 3, "cpgimp": 3}
 # Of a domain that is the point's own: 2 l / h, its half, which c takes up, its inverse and half of
 # that.
 _OWN_DOMAIN = {"linear": 0, "ugimp": 0, "cpgimp": 5}
-# Linear: 1 - room. GIMP: a, b; what is before and after the node (3, 1); w0, w2, w1 (1, 1, 3).
-_VALUES = {"linear": 1, "ugimp": 11, "cpgimp": 11}
-# GIMP: a / width, b / width and the middle one.
+# Linear: 1 - room. GIMP: a, b; w0, w2 and what they leave (4, 2, 2).
+_VALUES = {"linear": 1, "ugimp": 10, "cpgimp": 10}
+# GIMP: a / width, b / width and what they leave.
 _DERIVATIVES = {"linear": 0, "ugimp": 3, "cpgimp": 3}
 
 _STRAIN = 6  # dt L_xx, dt L_yy, dt (L_xy + L_yx) / 2 (2), dt (L_yx - L_xy) (2)
 _VOLUME = 3  # V (1 + (e_xx + e_yy))
 _ANGLE = 1 + 6 + 7  # its square, and three terms more of cosine and sine
-_TURN = 4 + 3 + 2 + 3  # middle and half of the normal stresses; the normal and the shear part
-_ELASTIC = 2 + 3 + 3 + 1 + 2  # lambda tr(e), then xx, yy, zz, xy
-_RETURN = 3 + 3 + 9 + 3 + 3 + 1 + 3 + 1 + 2 + 7 + 3
-# mean, deviator, sqrt(J2), overshoot, mean after the cone, tension limit, limit of sqrt(J2), its
-# new value, scale, stress, plastic strain
+_TURN = 4 + 3 + 3  # centre and half of the normal stresses; the half and the shear stress turned
+_ELASTIC = 1 + 2 + 3 + 2 + 2  # tr(e), then centre, half, zz, xy
+_RETURN = 2 + 1 + 7 + 3 + 3 + 1 + 2 + 1 + 2 + 7 + 2 + 3
+# centre beyond the mean, mean, sqrt(J2), overshoot, mean after the cone, tension limit, limit of
+# sqrt(J2), its new value, scale; centre, zz, half, xy; the normal stresses; plastic strain
 _FORCE = 4  # V / h times xx, yy, xy
 _MOVE = 2 + 4  # x + dx; (1 - alpha) v + dv
 _MOMENTUM = 2  # m v
