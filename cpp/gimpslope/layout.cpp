@@ -86,36 +86,27 @@ void activate_reached(const std::vector<Cell>& cells, Cell low, Cell high, int r
   }
 }
 
-/// Shares of about as many points for each thread, of even slabs and of odd ones: the first that
-/// fit into what is due to it, so that most are neighbours and small ones fill what is left.
+/// Shares of neighbouring slabs with about as many points for each thread.
 void share_out(Layout& layout, int threads) {
-  const auto size = [&](std::int32_t slab) {
+  const auto slabs = static_cast<std::int32_t>(layout.slabs.size());
+  const auto size = [&](std::int32_t slab) -> std::int64_t {
     const Slab& of = layout.slabs[slab];
     return of.begin == of.end ? 0 : layout.blocks[of.end - 1].end - layout.blocks[of.begin].begin;
   };
-  const auto slabs = static_cast<std::int32_t>(layout.slabs.size());
-  std::vector<std::int32_t> left[2];
-  int points[2] = {0, 0};
-  for (std::int32_t slab = 0; slab < slabs; ++slab) {
-    left[slab % 2].push_back(slab);
-    points[slab % 2] += size(slab);
-  }
+  const std::int64_t points = layout.blocks.back().end;
+  std::int64_t before = 0;  // points of the slabs that have been given
+  std::int32_t end = 0;
   for (int thread = 0; thread < threads; ++thread) {
-    for (int parity = 0; parity < 2; ++parity) {
-      layout.shares.push_back(static_cast<std::int32_t>(layout.shared.size()));
-      const int due = points[parity] / (threads - thread);
-      int taken = 0;
-      std::vector<std::int32_t> others;
-      for (const std::int32_t slab : left[parity]) {
-        const bool fits = taken + size(slab) <= due;
-        (fits ? layout.shared : others).push_back(slab);
-        if (fits) taken += size(slab);
-      }
-      left[parity].swap(others);
-      points[parity] -= taken;
-    }
+    const std::int32_t begin = end;
+    const std::int64_t due = points * (thread + 1) / threads;
+    while (end < slabs && (thread == threads - 1 || before + size(end) / 2 <= due))
+      before += size(end++);
+    layout.shares.push_back(begin);
+    for (const int parity : {0, 1})
+      for (std::int32_t slab = begin; slab < end; ++slab)
+        if (slab % 2 == parity) layout.shared.push_back(slab);
   }
-  layout.shares.push_back(static_cast<std::int32_t>(layout.shared.size()));
+  layout.shares.push_back(slabs);
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ struct Layout {
   std::vector<Block> blocks;
   std::vector<Slab> slabs;
   std::vector<std::int32_t> shared;  // slabs by thread, the even ones of each before its odd ones
-  std::vector<std::int32_t> shares;  // where in `shared` both begin of each thread, and its end
+  std::vector<std::int32_t> shares;  // where in `shared` those of each thread begin, and its end
 };
 
 /// Sorts the points by slab, material and row of their first node, and each row by column, first

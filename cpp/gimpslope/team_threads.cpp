@@ -44,6 +44,9 @@ struct Team::Shared {
   struct alignas(kCacheLine) Queue {
     std::atomic<int> next{0};
   };
+  struct alignas(kCacheLine) Piece {
+    Counter done{0};  // barriers passed before the last loop that it was done in
+  };
 
   const int size, spins;
   std::vector<std::thread> threads;
@@ -54,6 +57,7 @@ struct Team::Shared {
   Counter meets{0};  // barriers passed so far
   std::atomic<int> arrived{0};
   std::vector<Queue> queues;
+  std::vector<Piece> pieces;
 };
 
 Team::Shared::~Shared() {
@@ -107,6 +111,26 @@ void Team::run(void (*job)(void*, int), void* context) {
 
 int Team::claim(int queue) {
   return shared_->queues[queue].next.fetch_add(1, std::memory_order_relaxed);
+}
+
+void Team::finish(int piece) {
+  if (size_ == 1) return;
+  Counter& done = shared_->pieces[piece].done;
+  done.store(shared_->meets.load(std::memory_order_relaxed), std::memory_order_release);
+  done.notify_all();
+}
+
+void Team::await(int piece) {
+  if (size_ == 1) return;
+  const Counter& done = shared_->pieces[piece].done;
+  const std::uint32_t loop = shared_->meets.load(std::memory_order_relaxed);
+  for (std::uint32_t last; (last = done.load(std::memory_order_acquire)) != loop;)
+    wait_for_change(done, last, shared_->spins);
+}
+
+void Team::expect(int pieces) {
+  shared_->pieces = std::vector<Shared::Piece>(pieces);
+  for (Shared::Piece& piece : shared_->pieces) piece.done = shared_->meets - 1;
 }
 
 void Team::barrier() { shared_->meet(); }

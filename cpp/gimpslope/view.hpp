@@ -195,7 +195,7 @@ struct View {
   const Slab* slabs;
   int slab_count;
   const std::int32_t* shared;  // slabs by thread, the even ones of each before its odd ones
-  const std::int32_t* shares;  // even ones of thread t from shares[2 t] on, odd ones one further
+  const std::int32_t* shares;  // those of thread t from shares[t] on
   const Law* laws;             // of each material
   double half_length;          // of all points alike, where points.half_length is null
   DomainUpdate domain_update;

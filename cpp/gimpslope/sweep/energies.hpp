@@ -51,7 +51,7 @@ inline void add_energy_of_motion(const View<double>& view, const Block& block, d
 inline void measure_energies(const View<double>& view, double gravity_x, double gravity_y,
                              Report* reports) {
   together(*view.team, [&](int thread) {
-    take_slabs(view, thread, Slabs::all, [&](int slab) {
+    take_slabs(view, thread, [&](int slab) {
       Energies sum;
       for_each_block(view, slab, [&](const Block& block) {
         if (view.laws[block.material].kind == LawKind::rigid) return;

@@ -15,48 +15,50 @@ void together(Team& team, Work work) {
   team.run([](void* context, int thread) { (*static_cast<Work*>(context))(thread); }, &work);
 }
 
-/// Slabs that two threads may work on at the same time, for none of them shares a node with another
-/// one; or all, where nodes do not matter.
-enum class Slabs { even, odd, all };
-
-/// Runs work(slab) for these slabs: those of the thread's own share, so that their points stay in
-/// its cache from sweep to sweep, then what others have left of theirs.
+/// Runs work(slab) for all slabs: those of the thread's own share, so that their points stay in its
+/// cache from sweep to sweep, then what others have left of theirs. Called by all threads of a
+/// team.
 template <class Work, class Real>
-void take_slabs(const View<Real>& view, int thread, Slabs which, Work work) {
+void take_slabs(const View<Real>& view, int thread, Work work) {
   const int threads = view.team->size();
   for (int k = 0; k < threads; ++k) {
     const int owner = (thread + k) % threads;
-    const std::int32_t* shares = view.shares + 2 * owner;
-    const int begin = shares[which == Slabs::odd ? 1 : 0];
-    const int end = shares[which == Slabs::even ? 1 : 2];
+    const int begin = view.shares[owner], end = view.shares[owner + 1];
     for (int next; (next = begin + view.team->claim(owner)) < end;) work(view.shared[next]);
   }
   view.team->barrier();
 }
 
-/// Runs work(slab) for all slabs, even ones first and odd ones after, so that no two that run at
-/// the same time reach the same node. Called by all threads of a team.
-template <class Work, class Real>
-void for_each_slab(const View<Real>& view, int thread, Work work) {
-  for (const Slabs which : {Slabs::even, Slabs::odd}) take_slabs(view, thread, which, work);
-}
-
-/// The same, with rows(begin, end) for all rows of nodes before any point reaches them: an even
-/// slab reaches its own rows and those of the next one, and no other even one reaches these.
+/// The same where work reaches nodes, with rows(begin, end) for all rows of these before any point
+/// does: an even slab reaches its own rows and those of the next one, and no other even one reaches
+/// these. An odd slab waits for the even ones beside it, so that no two that run at the same time
+/// reach the same node, and each node is reached in one order.
 template <class Rows, class Work, class Real>
 void for_each_slab(const View<Real>& view, int thread, Rows rows, Work work) {
-  take_slabs(view, thread, Slabs::even, [&](int slab) {
-    const int last = slab + 1 < view.slab_count ? slab + 1 : slab;
-    rows(view.slabs[slab].first_row, view.slabs[last].end_row);
-    work(slab);
+  const int last = view.slab_count - 1;
+  take_slabs(view, thread, [&](int slab) {
+    if (slab % 2 == 0) {
+      const int beyond = slab < last ? slab + 1 : slab;
+      rows(view.slabs[slab].first_row, view.slabs[beyond].end_row);
+      work(slab);
+      view.team->finish(slab);
+    } else {
+      view.team->await(slab - 1);
+      if (slab < last) view.team->await(slab + 1);
+      work(slab);
+    }
   });
-  take_slabs(view, thread, Slabs::odd, work);
+}
+
+template <class Work, class Real>
+void for_each_slab(const View<Real>& view, int thread, Work work) {
+  for_each_slab(view, thread, [](int, int) {}, work);
 }
 
 /// Runs work(row) for all rows of nodes. Called by all threads of a team.
 template <class Work, class Real>
 void for_each_row(const View<Real>& view, int thread, Work work) {
-  take_slabs(view, thread, Slabs::all, [&](int slab) {
+  take_slabs(view, thread, [&](int slab) {
     for (int row = view.slabs[slab].first_row; row < view.slabs[slab].end_row; ++row) work(row);
   });
 }
