@@ -173,9 +173,9 @@ struct BodiesView {
 /// What is known of the points of a block, so that not all need be looked at in each step; zeros
 /// where it is not.
 struct Known {
-  double margin = 0.0;       // from yield, see sweep/yielding.hpp
-  double most_volume = 0.0;  // at least the largest after the last strain, m2
-  double least_mass = 0.0;   // kg/m
+  double margin = 0.0;                       // from yield, see sweep/yielding.hpp
+  double most_volume = 0.0;                  // after the last strain, m2
+  double least_mass = 0.0, most_mass = 0.0;  // kg/m
 };
 
 /// h times the velocity gradient of the points of a block.

@@ -19,24 +19,32 @@ double largest_specific_volume(int n, const Real* volume, const Real* mass) {
 }
 
 template <class Real>
-double least_of(int n, const Real* values) {
-  double least = values[0];
-#pragma omp simd reduction(min : least)
-  for (int k = 0; k < n; ++k) least = values[k] < least ? values[k] : least;
-  return least;
+void know_masses(int n, const Real* mass, Known& known) {
+  double least = mass[0], most = mass[0];
+#pragma omp simd reduction(min : least) reduction(max : most)
+  for (int k = 0; k < n; ++k) {
+    least = mass[k] < least ? mass[k] : least;
+    most = mass[k] > most ? mass[k] : most;
+  }
+  known.least_mass = least;
+  known.most_mass = most;
 }
 
-/// Squared wave speed, c^2 = (K + 4G/3) V / m, of a block that this step has strained. One that
-/// cannot hold the largest, but for rounding, is spared its divisions.
+/// Squared wave speed, c^2 = (K + 4G/3) V / m, of a block that this step has strained. Points alike
+/// in mass are spared their divisions, and so is a block that cannot hold the largest, but for
+/// rounding.
 template <class Real>
 void add_wave_speed(const View<Real>& view, const Block& block, Speeds& largest) {
   const int begin = block.begin, n = block.end - block.begin;
   const Real *volume = view.points.volume + begin, *mass = view.points.mass + begin;
   const double modulus = view.laws[block.material].wave_modulus;
   Known& known = view.known[&block - view.blocks];
-  if (known.least_mass == 0.0) known.least_mass = least_of(n, mass);
+  if (known.least_mass == 0.0) know_masses(n, mass, known);
   if (modulus * known.most_volume <= largest.wave * known.least_mass) return;
-  const double wave = modulus * largest_specific_volume(n, volume, mass);
+  const double specific = known.least_mass == known.most_mass
+                              ? known.most_volume / known.least_mass
+                              : largest_specific_volume(n, volume, mass);
+  const double wave = modulus * specific;
   largest.wave = wave > largest.wave ? wave : largest.wave;
 }
 

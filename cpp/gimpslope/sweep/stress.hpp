@@ -72,11 +72,13 @@ void strain(const View<Real>& view, int begin, int n, double dt, const Gradient&
   if (turned > kTinyAngle)
     for (int k = 0; k < n; ++k)
       rotation(factor * (l.vy_x[k] - l.vx_y[k]), turned, s.cosine[k], s.sine[k]);
-  if (!linear)
+  if (!linear) {
+    s.most_volume = 0.0;
     for (int k = 0; k < n; ++k) {
       volume[k] *= std::exp(s.xx[k] + s.yy[k]);
       s.most_volume = volume[k] > s.most_volume ? volume[k] : s.most_volume;
     }
+  }
 }
 
 /// Stress after the step: turned by the exact rotation, then the law (paper eq. 24-25).

@@ -22,7 +22,7 @@ constexpr double kNearlyYields = 1e-5;
 struct Strains {
   alignas(kCacheLine) double xx[kBlock], yy[kBlock], xy[kBlock];
   double cosine[kBlock], sine[kBlock];  // of twice the angle
-  double most_volume;                   // of the points after them, at least, m2
+  double most_volume;                   // of the points after them, m2
   double largest;                       // |xx| + |yy| + |xy| of a point
 };
 
