@@ -62,9 +62,9 @@ double Solver::release_stress() {
     const Law& law = laws_[p.material[k]];
     if (law.kind != LawKind::drucker_prager) continue;
     const Stress before = stress_of(p, k);
-    Mohr circle = mohr(before);
+    Mohr circle = circle_of(before);
     if (!return_to_surface(law.drucker_prager, circle, p.plastic_strain[0][k])) continue;
-    const Stress after = stress(circle);
+    const Stress after = stress_of(circle);
     p.stress[0][k] = after.xx;
     p.stress[1][k] = after.yy;
     p.stress[2][k] = after.zz;

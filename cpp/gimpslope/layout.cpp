@@ -86,7 +86,8 @@ void activate_reached(const std::vector<Cell>& cells, Cell low, Cell high, int r
   }
 }
 
-/// Shares of neighbouring slabs with about as many points for each thread.
+/// Shares of neighbouring slabs with about as many points for each thread. They begin with an even
+/// slab, so that the only one that waits for another share waits for what that begins with.
 void share_out(Layout& layout, int threads) {
   const auto slabs = static_cast<std::int32_t>(layout.slabs.size());
   const auto size = [&](std::int32_t slab) -> std::int64_t {
@@ -99,8 +100,7 @@ void share_out(Layout& layout, int threads) {
   for (int thread = 0; thread < threads; ++thread) {
     const std::int32_t begin = end;
     const std::int64_t due = points * (thread + 1) / threads;
-    while (end < slabs && (thread == threads - 1 || before + size(end) / 2 <= due))
-      before += size(end++);
+    while (end < slabs && (end % 2 == 1 || before + size(end) / 2 <= due)) before += size(end++);
     layout.shares.push_back(begin);
     for (const int parity : {0, 1})
       for (std::int32_t slab = begin; slab < end; ++slab)

@@ -13,7 +13,7 @@ namespace gimpslope {
 struct Layout {
   std::vector<Block> blocks;
   std::vector<Slab> slabs;
-  std::vector<std::int32_t> shared;  // slabs by thread, the even ones of each before its odd ones
+  std::vector<std::int32_t> shared;  // slabs by thread, even ones first: see for_each_slab
   std::vector<std::int32_t> shares;  // where in `shared` those of each thread begin, and its end
 };
 

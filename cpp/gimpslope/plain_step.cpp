@@ -68,10 +68,10 @@ void deform(const PlainView& g, PlainPoint& p, double dt) {
   const double grown = strain.xx + strain.yy;
   p.volume *= g.volume_update == VolumeUpdate::linear ? 1.0 + grown : std::exp(grown);
   const double turn = dt * (yx - xy);
-  Mohr circle = turned(mohr({p.sxx, p.syy, p.szz, p.sxy}), std::cos(turn), std::sin(turn));
+  Mohr circle = turned(circle_of({p.sxx, p.syy, p.szz, p.sxy}), std::cos(turn), std::sin(turn));
   with_constants(g.laws[p.material],
                  [&](const auto& law) { update(law, circle, strain, p.plastic_strain); });
-  const Stress after = stress(circle);
+  const Stress after = stress_of(circle);
   p.sxx = after.xx;
   p.syy = after.yy;
   p.szz = after.zz;

@@ -73,9 +73,9 @@ void return_mapping(const Material& material, std::span<double> stress,
   const DruckerPrager constants = law(material).drucker_prager;
   for (std::size_t k = 0; k < plastic_strain.size(); ++k) {
     double* s = stress.data() + 4 * k;
-    Mohr circle = mohr({s[0], s[1], s[2], s[3]});
+    Mohr circle = circle_of({s[0], s[1], s[2], s[3]});
     if (!return_to_surface(constants, circle, plastic_strain[k])) continue;
-    const Stress point = gimpslope::stress(circle);
+    const Stress point = stress_of(circle);
     s[0] = point.xx;
     s[1] = point.yy;
     s[2] = point.zz;
@@ -93,9 +93,9 @@ void update_stress(const Material& material, std::span<const double> velocity_gr
     const Strain increment{dt * l[0], dt * l[3], 0.5 * dt * (l[1] + l[2])};
     with_constants(of_material, [&](const auto& constants) {
       for (std::int64_t step = 0; step < steps; ++step) {
-        Mohr circle = turned(mohr(point), cosine, sine);
+        Mohr circle = turned(circle_of(point), cosine, sine);
         update(constants, circle, increment, plastic);
-        point = gimpslope::stress(circle);
+        point = stress_of(circle);
       }
     });
   };

@@ -53,7 +53,8 @@ inline void rotation(double angle, double largest, double& cosine, double& sine)
 
 /// A stress turned with the material, given cosine and sine of twice the angle.
 inline Mohr turned(const Mohr& s, double cosine, double sine) {
-  return {s.centre, s.half * cosine - s.xy * sine, s.zz, s.half * sine + s.xy * cosine};
+  return {s.centre, s.half_difference * cosine - s.xy * sine, s.zz,
+          s.half_difference * sine + s.xy * cosine};
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

@@ -230,7 +230,7 @@ void Solver::prepare() {
     }
     stable_at_sort_ = stable_time_step();
     reports_.resize(layout_.slabs.size());
-    team_->expect(static_cast<int>(layout_.slabs.size()));
+    team_->resize(static_cast<int>(layout_.slabs.size()));
     forget_known();
     if (method_.ledger) ledger_rows_.resize(grid_.rows());
     if (grid_.view().cells != nullptr) gradients_.resize(layout_.blocks.size());

@@ -25,15 +25,17 @@ class Team {
   /// one queue a thread.
   int claim(int queue);
 
-  /// For jobs: tells that a piece of the loop is done, and waits until one is.
+  /// For jobs: tells that a piece of the loop is done, once a loop.
   void finish(int piece);
+
+  /// For jobs: waits until a piece of the loop is done.
   void await(int piece);
 
   /// For jobs: waits for all threads, which ends the loop and begins the next one at index 0.
   void barrier();
 
-  /// Between jobs: pieces of a loop are less than this.
-  void expect(int pieces);
+  /// Between jobs: loops have so many pieces from now on.
+  void resize(int pieces);
 
  private:
   struct Shared;  // by the threads: team_threads.cpp, or team_alone.cpp in a build without them

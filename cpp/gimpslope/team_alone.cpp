@@ -27,7 +27,7 @@ void Team::finish(int) {}
 
 void Team::await(int) {}
 
-void Team::expect(int) {}
+void Team::resize(int) {}
 
 void Team::barrier() { shared_->next = 0; }
 

@@ -45,7 +45,7 @@ struct Team::Shared {
     std::atomic<int> next{0};
   };
   struct alignas(kCacheLine) Piece {
-    Counter done{0};  // barriers passed before the last loop that it was done in
+    Counter done{0};  // number of the last loop in which it was; 0: in none
   };
 
   const int size, spins;
@@ -53,8 +53,8 @@ struct Team::Shared {
   void (*job)(void*, int) = nullptr;
   void* context = nullptr;
   bool leaving = false;
-  Counter jobs{0};   // started so far
-  Counter meets{0};  // barriers passed so far
+  Counter jobs{0};  // started so far
+  Counter loop{1};  // number of this loop, which a barrier ends
   std::atomic<int> arrived{0};
   std::vector<Queue> queues;
   std::vector<Piece> pieces;
@@ -76,14 +76,14 @@ void Team::Shared::work(int thread) {
 }
 
 void Team::Shared::meet() {
-  const std::uint32_t before = meets.load(std::memory_order_acquire);
+  const std::uint32_t before = loop.load(std::memory_order_acquire);
   if (arrived.fetch_add(1, std::memory_order_acq_rel) + 1 < size) {
-    wait_for_change(meets, before, spins);
+    wait_for_change(loop, before, spins);
     return;
   }
   arrived.store(0, std::memory_order_relaxed);
   for (Queue& queue : queues) queue.next.store(0, std::memory_order_relaxed);
-  if (size > 1) advance(meets);
+  if (size > 1) advance(loop);
 }
 
 bool has_threads() { return true; }
@@ -116,22 +116,19 @@ int Team::claim(int queue) {
 void Team::finish(int piece) {
   if (size_ == 1) return;
   Counter& done = shared_->pieces[piece].done;
-  done.store(shared_->meets.load(std::memory_order_relaxed), std::memory_order_release);
+  done.store(shared_->loop.load(std::memory_order_relaxed), std::memory_order_release);
   done.notify_all();
 }
 
 void Team::await(int piece) {
   if (size_ == 1) return;
   const Counter& done = shared_->pieces[piece].done;
-  const std::uint32_t loop = shared_->meets.load(std::memory_order_relaxed);
-  for (std::uint32_t last; (last = done.load(std::memory_order_acquire)) != loop;)
-    wait_for_change(done, last, shared_->spins);
+  const std::uint32_t before = done.load(std::memory_order_acquire);
+  if (before != shared_->loop.load(std::memory_order_relaxed))
+    wait_for_change(done, before, shared_->spins);
 }
 
-void Team::expect(int pieces) {
-  shared_->pieces = std::vector<Shared::Piece>(pieces);
-  for (Shared::Piece& piece : shared_->pieces) piece.done = shared_->meets - 1;
-}
+void Team::resize(int pieces) { shared_->pieces = std::vector<Shared::Piece>(pieces); }
 
 void Team::barrier() { shared_->meet(); }
 

@@ -194,7 +194,7 @@ struct View {
   Gradient* gradients;  // of each block, null unless volume strains are averaged
   const Slab* slabs;
   int slab_count;
-  const std::int32_t* shared;  // slabs by thread, the even ones of each before its odd ones
+  const std::int32_t* shared;  // slabs by thread, even ones first: see for_each_slab
   const std::int32_t* shares;  // those of thread t from shares[t] on
   const Law* laws;             // of each material
   double half_length;          // of all points alike, where points.half_length is null

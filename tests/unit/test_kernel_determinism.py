@@ -106,6 +106,18 @@ def test_any_number_of_threads_with_cells_and_body_forces(threads: int) -> None:
     assert_identical(*states)
 
 
+@pytest.mark.parametrize("rows", [2, 6, 20])
+def test_more_threads_than_slabs(rows: int) -> None:
+    """One slab of four rows of cells, two, and a few."""
+    states = []
+    for threads in (1, 2, 3, 8):
+        stepped = solver(sliding(30, rows), threads=threads)
+        stepped.advance(FEW)
+        states.append(state(stepped))
+    for other in states[1:]:
+        assert_identical(other, states[0])
+
+
 def test_steps_taken_one_by_one(expected: State) -> None:
     stepped = solver(sliding())
     for _ in range(STEPS):

@@ -237,3 +237,20 @@ def test_memory_is_below_a_kilobyte_a_point() -> None:
 def resident_bytes() -> int:
     """Memory of this process; 0 where the system does not tell."""
     return int(STATM.read_text().split()[1]) * 4096 if STATM.exists() else 0
+
+
+@pytest.mark.parametrize("volume_update", ["linear", "exponential"])
+@pytest.mark.parametrize("lighter", [1.0, 0.7])
+def test_courant_step_after_steps(lighter: float, volume_update: str) -> None:
+    """With the largest wave speed sqrt(M V / m) of all points, whose masses may differ."""
+    scene = sliding(24, 24) | {"materials": [SOIL], "volume_update": volume_update}
+    scene["material"] = np.zeros_like(scene["material"])
+    scene["mass"][::7] *= lighter
+    stepped = solver(scene)
+    soil = _core.Material(**SOIL)
+    for _ in range(5):
+        stepped.advance(60)
+        specific = (stepped.get("volume") / stepped.get("mass")).max()
+        wave = np.sqrt(soil.wave_speed**2 * SOIL["density"] * specific)
+        fastest = np.linalg.norm(stepped.get("velocity"), axis=1).max()
+        assert stepped.time_step == pytest.approx(0.4 * 0.5 / (wave + fastest), rel=1e-12)

@@ -89,6 +89,24 @@ def test_result_lies_in_or_on_the_surface(changes: dict[str, Any]) -> None:
     assert np.abs(after[outside]).max() < SURFACE * SCALE
 
 
+def test_nothing_goes_beyond_the_apex() -> None:
+    """Where rounding might: any material, mean stresses about its limit. The deviator shrinks but
+    does not turn over, and plastic strain is never negative."""
+    random = np.random.default_rng(11)
+    for cone in np.repeat(CONES, 150):
+        friction = random.uniform(0.01, 60.0)
+        cohesion = 10.0 ** random.uniform(-2, 8)
+        dilation = random.choice([0.0, friction / 3, friction])
+        material = soil(cone=str(cone), friction=friction, cohesion=cohesion, dilation=dilation)
+        limit = material.tension_limit
+        trial = limit * random.uniform(-1, 1, (200, 4)) * random.choice([1e-9, 1e-3, 1], (200, 1))
+        trial[:, :3] += limit * random.choice([0.5, 1 - 1e-15, 1, 1 + 1e-15, 3], (200, 1))
+        stress, plastic_strain = _core.return_mapping(material, trial)
+        assert plastic_strain.min() >= 0.0
+        assert (stress[:, 3] * trial[:, 3]).min() >= 0.0
+        assert (np.abs(stress[:, 3]) <= np.abs(trial[:, 3])).all()
+
+
 @variants
 def test_elastic_stress_is_untouched(changes: dict[str, Any]) -> None:
     material, cohesion, trial, stress, plastic_strain = returned(changes)

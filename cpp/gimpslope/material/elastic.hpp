@@ -1,6 +1,8 @@
 // Linear elasticity in plane strain: the increment of the Jaumann rate (paper eq. 24-25).
 #pragma once
 
+#include <cmath>
+
 #include "../instruction_set.hpp"
 
 namespace gimpslope {
@@ -10,10 +12,10 @@ struct Stress {
   double xx, yy, zz, xy;
 };
 
-/// The same by Mohr's circle in the plane: its centre and half the difference of xx and yy, which
-/// turns with xy alone.
+/// The same by Mohr's circle in the plane: its centre (xx + yy) / 2, and (xx - yy) / 2 and xy,
+/// which alone turn with the material.
 struct Mohr {
-  double centre, half, zz, xy;
+  double centre, half_difference, zz, xy;
 };
 
 /// Strain increment in plane strain; xy is the tensor component.
@@ -28,8 +30,12 @@ struct Elastic {
 
 inline namespace GIMPSLOPE_INSTRUCTION_SET {
 
-inline Mohr mohr(const Stress& s) { return {0.5 * (s.xx + s.yy), 0.5 * (s.xx - s.yy), s.zz, s.xy}; }
-inline Stress stress(const Mohr& s) { return {s.centre + s.half, s.centre - s.half, s.zz, s.xy}; }
+inline Mohr circle_of(const Stress& s) {
+  return {0.5 * (s.xx + s.yy), 0.5 * (s.xx - s.yy), s.zz, s.xy};
+}
+inline Stress stress_of(const Mohr& s) {
+  return {s.centre + s.half_difference, s.centre - s.half_difference, s.zz, s.xy};
+}
 
 /// What the product of two stresses with the compliance in between needs, 1/Pa.
 struct Compliance {
@@ -49,14 +55,24 @@ inline double product(const Compliance& c, const Stress& a, const Stress& b) {
   return c.mean * mean_a * mean_b + c.deviator * deviators;
 }
 
+/// The deviatoric stress that xx and yy have in common: with d for it and h for half of their
+/// difference, the deviator is d + h, d - h, -2 d and xy.
+inline double common_deviator(const Mohr& s) { return (s.centre - s.zz) * (1.0 / 3.0); }
+
+/// sqrt(J2), half the deviator's product with itself.
+inline double root_j2(const Mohr& s) {
+  const double common = common_deviator(s);
+  return std::sqrt((s.half_difference * s.half_difference + s.xy * s.xy) + 3.0 * common * common);
+}
+
 /// Adds the elastic increment to a stress that has turned with the material already.
-inline void update(const Elastic& law, Mohr& stress, const Strain& increment,
+inline void update(const Elastic& law, Mohr& circle, const Strain& increment,
                    double& /*plastic_strain*/) {
   const double grown = increment.xx + increment.yy;
-  stress.centre += (law.lame + law.shear) * grown;
-  stress.half += law.shear * (increment.xx - increment.yy);
-  stress.zz += law.lame * grown;
-  stress.xy += 2.0 * law.shear * increment.xy;
+  circle.centre += (law.lame + law.shear) * grown;
+  circle.half_difference += law.shear * (increment.xx - increment.yy);
+  circle.zz += law.lame * grown;
+  circle.xy += 2.0 * law.shear * increment.xy;
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

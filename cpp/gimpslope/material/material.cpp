@@ -112,10 +112,8 @@ Law law(const Material& m) {
   constants.eta = cone.friction;
   constants.k = cone.cohesion * m.cohesion;
   constants.flow = bulk * cone.dilation / (shear + bulk * cone.friction * cone.dilation);
-  constants.tension = tension_limit(m);
-  while (std::fma(-constants.eta, constants.tension, constants.k) <
-         0.0)  // by rounding, at the apex
-    constants.tension = std::nextafter(constants.tension, -constants.k);
+  constexpr double below = 1.0 - std::numeric_limits<double>::epsilon();
+  constants.tension = std::min(tension_limit(m), below * (constants.k / constants.eta));
   constants.per_shear = 1.0 / (std::sqrt(3.0) * shear);
   constants.per_strain = 2.0 * shear + std::max(constants.eta, 1.0) * bulk;
   return result;

@@ -14,7 +14,8 @@ struct Linear {
   static constexpr double variance = 2.0;  // second moment, in those of a box one cell wide
 
   /// Values w and derivatives d (times the cell size) at the nodes of a point that lies
-  /// 1 - room + behind cells to the right of the first one, 0 < room <= 1.
+  /// 1 - room + behind cells to the right of the first one, 0 < room <= 1. Values add up to one
+  /// and derivatives to zero: from this the sweeps take those of the second node.
   static void evaluate(double room, double /*width*/, double /*inverse*/, double (&w)[nodes],
                        double (&d)[nodes]) {
     w[0] = room;

@@ -25,12 +25,12 @@ struct QuadraticBspline {
     d[2] = xi;
   }
 
-  /// Values and derivatives where the first node lies one cell beyond a wall on the left (`low`),
-  /// or the last one beyond a wall on the right (`high`). That node goes on in line with the two
-  /// before it, so that motion that is linear up to the wall is met, and the wall's own node alone
-  /// moves what touches the wall (Steffen, Wallstedt, Guilkey, Kirby and Berzins 2008, CMES 31,
-  /// 107, modified boundary functions). That leaves hats in the half cell at the wall; a point
-  /// beyond the wall moves with the wall's node.
+  /// Values, which add up to one, and derivatives where the first node lies one cell beyond a wall
+  /// on the left (`low`), or the last one beyond a wall on the right (`high`). That node goes on in
+  /// line with the two before it, so that motion that is linear up to the wall is met, and the
+  /// wall's own node alone moves what touches the wall (Steffen, Wallstedt, Guilkey, Kirby and
+  /// Berzins 2008, CMES 31, 107, modified boundary functions). That leaves hats in the half cell at
+  /// the wall; a point beyond the wall moves with the wall's node.
   static void at_walls(double room, bool low, bool high, double (&w)[nodes], double (&d)[nodes]) {
     const double inside = low ? 0.5 - room : room - 0.5;
     const double t = inside > 0.0 ? inside : 0.0, slope = inside < 0.0 ? 0.0 : 1.0;

@@ -123,8 +123,9 @@ void add_stress_work(const View<Real>& view, int begin, int n, const Elastic& la
 #pragma omp simd reduction(+ : plastic, hypoelastic, integration)
   for (int k = 0; k < n; ++k) {
     const Stress after{sxx[k], syy[k], szz[k], sxy[k]};
-    const Stress old = stress(turned(mohr({before.xx[k], before.yy[k], before.zz[k], before.xy[k]}),
-                                     s.cosine[k], s.sine[k]));
+    const Stress old =
+        stress_of(turned(circle_of({before.xx[k], before.yy[k], before.zz[k], before.xy[k]}),
+                         s.cosine[k], s.sine[k]));
     const Stress change{after.xx - old.xx, after.yy - old.yy, after.zz - old.zz, after.xy - old.xy};
     const double work = after.xx * s.xx[k] + after.yy * s.yy[k] + 2.0 * after.xy * s.xy[k];
     plastic += volume[k] * (work - product(compliance, after, change));

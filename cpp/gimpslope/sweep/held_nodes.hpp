@@ -59,11 +59,13 @@ void add_shares(const View<double>& view, int body, const int (&corner)[2], doub
       for (int j = 0; j < Shape::nodes; ++j) {
         for (int i = 0; i < Shape::nodes; ++i) {
           double* node = first + 3 * (j * all.window + i);
-          node[0] += share * weights.value_x(i, k) * weights.value_y(j, k);
           if constexpr (kNeed == Need::gradients) {
             const Quad along_x = weights.pairs_x(i, k), along_y = weights.pairs_y(j, k);
+            node[0] += share * along_x[1] * along_y[0];
             node[1] += share * along_x[0] * along_y[0];
             node[2] += share * along_x[1] * along_y[1];
+          } else {
+            node[0] += share * weights.value_x(i, k) * weights.value_y(j, k);
           }
         }
       }

@@ -31,7 +31,7 @@ void know_masses(int n, const Real* mass, Known& known) {
 }
 
 /// Squared wave speed, c^2 = (K + 4G/3) V / m, of a block that this step has strained. Points alike
-/// in mass are spared their divisions, and so is a block that cannot hold the largest, but for
+/// in mass are spared their divisions, and so is a block that cannot hold the largest, unless by
 /// rounding.
 template <class Real>
 void add_wave_speed(const View<Real>& view, const Block& block, Speeds& largest) {
@@ -67,7 +67,7 @@ void add_speeds(const View<Real>& view, const Block& block, Speeds& largest) {
 template <class Real>
 void measure_speeds(const View<Real>& view, Report* reports) {
   together(*view.team, [&](int thread) {
-    for_each_slab(view, thread, [&](int slab) {
+    take_slabs(view, thread, [&](int slab) {
       Speeds speeds;
       for_each_block(view, slab, [&](const Block& block) { add_speeds(view, block, speeds); });
       reports[slab].speeds = speeds;

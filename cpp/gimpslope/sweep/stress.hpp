@@ -94,10 +94,10 @@ void update_stress(const View<Real>& view, int begin, int n, const Constants& la
   const Constants constants = law;
 #pragma omp simd
   for (int k = 0; k < n; ++k) {
-    Mohr circle = turned(mohr({xx[k], yy[k], zz[k], xy[k]}), s.cosine[k], s.sine[k]);
+    Mohr circle = turned(circle_of({xx[k], yy[k], zz[k], xy[k]}), s.cosine[k], s.sine[k]);
     double strain = plastic_strain[k];
     update(constants, circle, {s.xx[k], s.yy[k], s.xy[k]}, strain);
-    const Stress after = stress(circle);
+    const Stress after = stress_of(circle);
     xx[k] = after.xx;
     yy[k] = after.yy;
     zz[k] = after.zz;

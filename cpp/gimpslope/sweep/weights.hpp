@@ -26,11 +26,11 @@ struct Weights<Shape, Need::values> {
   double value_y(int j, int k) const { return y[j][k]; }
   void set_x(int i, int k, double value, double /*derivative*/) { x[i][k] = value; }
   void set_y(int j, int k, double value, double /*derivative*/) { y[j][k] = value; }
-  void repeat(int from, int k) {
-    first[k] = first[from];
+  void copy_point(int from, int to) {
+    first[to] = first[from];
     for (int i = 0; i < Shape::nodes; ++i) {
-      x[i][k] = x[i][from];
-      y[i][k] = y[i][from];
+      x[i][to] = x[i][from];
+      y[i][to] = y[i][from];
     }
   }
 
@@ -56,40 +56,41 @@ struct Weights<Shape, Need::values> {
 /// derivatives to zero: an addition costs less than a place in memory.
 template <class Shape>
 struct Weights<Shape, Need::gradients> {
+  static_assert(Shape::nodes >= 2);
   static constexpr int kRest = 1, kOthers = Shape::nodes - 1;
 
   alignas(kCacheLine) int first[kBlock];
   double x[kOthers][2 * kBlock], y[kOthers][2 * kBlock];
 
   [[gnu::always_inline]] double value_x(int i, int k) const {
-    return weight(i, 1.0, [&](int other) { return x[other][2 * k + 1]; });
+    return kept_or_rest(i, 1.0, [&](int place) { return x[place][2 * k + 1]; });
   }
   [[gnu::always_inline]] double value_y(int j, int k) const {
-    return weight(j, 1.0, [&](int other) { return y[other][2 * k]; });
+    return kept_or_rest(j, 1.0, [&](int place) { return y[place][2 * k]; });
   }
   /// The pair twice.
   [[gnu::always_inline]] Quad pairs_x(int i, int k) const {
-    return weight(i, kSumX, [&](int other) { return twice(x[other] + 2 * k); });
+    return kept_or_rest(i, kSumX, [&](int place) { return twice(x[place] + 2 * k); });
   }
   [[gnu::always_inline]] Quad pairs_y(int j, int k) const {
-    return weight(j, kSumY, [&](int other) { return twice(y[other] + 2 * k); });
+    return kept_or_rest(j, kSumY, [&](int place) { return twice(y[place] + 2 * k); });
   }
   void set_x(int i, int k, double value, double derivative) {
     if (i == kRest) return;
-    x[other(i)][2 * k] = derivative;
-    x[other(i)][2 * k + 1] = value;
+    x[place_of(i)][2 * k] = derivative;
+    x[place_of(i)][2 * k + 1] = value;
   }
   void set_y(int j, int k, double value, double derivative) {
     if (j == kRest) return;
-    y[other(j)][2 * k] = value;
-    y[other(j)][2 * k + 1] = derivative;
+    y[place_of(j)][2 * k] = value;
+    y[place_of(j)][2 * k + 1] = derivative;
   }
-  void repeat(int from, int k) {
-    first[k] = first[from];
+  void copy_point(int from, int to) {
+    first[to] = first[from];
     for (int i = 0; i < kOthers; ++i)
       for (int c = 0; c < 2; ++c) {
-        x[i][2 * k + c] = x[i][2 * from + c];
-        y[i][2 * k + c] = y[i][2 * from + c];
+        x[i][2 * to + c] = x[i][2 * from + c];
+        y[i][2 * to + c] = y[i][2 * from + c];
       }
   }
 
@@ -107,19 +108,20 @@ struct Weights<Shape, Need::gradients> {
     for (int j = 0; j < Shape::nodes; ++j)
 #pragma GCC unroll 8
       for (int m = 0; m < 2; ++m)
-        w.up[j][m] = weight(j, kSumY, [&](int other) { return quad(y[other] + 2 * k + 4 * m); });
+        w.up[j][m] =
+            kept_or_rest(j, kSumY, [&](int place) { return quad(y[place] + 2 * k + 4 * m); });
     return w;
   }
 
  private:
   static constexpr Quad kSumX{0.0, 1.0, 0.0, 1.0}, kSumY{1.0, 0.0, 1.0, 0.0};
 
-  static constexpr int other(int node) { return node < kRest ? node : node - 1; }
+  static constexpr int place_of(int node) { return node < kRest ? node : node - 1; }
 
-  /// What of(other(node)) is, or what the others leave of their `sum`.
+  /// What of(place) says for a node that has a place, or what all others leave of the `sum`.
   template <class Number, class Of>
-  [[gnu::always_inline]] static Number weight(int node, Number sum, Of of) {
-    if (node != kRest) return of(other(node));
+  [[gnu::always_inline]] static Number kept_or_rest(int node, Number sum, Of of) {
+    if (node != kRest) return of(place_of(node));
 #pragma GCC unroll 8
     for (int k = 0; k < kOthers; ++k) sum -= of(k);
     return sum;
@@ -182,7 +184,7 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
     }
     for (int j = 0; j < Shape::nodes; ++j) out.set_y(j, k, w[j], d[j]);
   }
-  for (int k = n; k % 4 != 0; ++k) out.repeat(n - 1, k);
+  for (int k = n; k % 4 != 0; ++k) out.copy_point(n - 1, k);
 }
 
 }  // namespace GIMPSLOPE_INSTRUCTION_SET

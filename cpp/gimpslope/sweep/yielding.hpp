@@ -42,11 +42,10 @@ double yield_margin(const DruckerPrager& law, const PointsView<Real>& p, int beg
   double least = law.tension;
 #pragma omp simd reduction(min : least)
   for (int k = 0; k < n; ++k) {
-    const double mean = (xx[k] + yy[k] + zz[k]) * (1.0 / 3.0);
-    const double a = xx[k] - mean, b = yy[k] - mean, c = zz[k] - mean;
-    const double root_j2 = std::sqrt(0.5 * (a * a + b * b + c * c) + xy[k] * xy[k]);
-    const double near = kNearlyYields * (root_j2 + std::fabs(mean) + law.k);
-    const double below_cone = law.k - law.eta * mean - root_j2 - near;
+    const Mohr s = circle_of({xx[k], yy[k], zz[k], xy[k]});
+    const double mean = s.centre - common_deviator(s), root = root_j2(s);
+    const double near = kNearlyYields * (root + std::fabs(mean) + law.k);
+    const double below_cone = law.k - law.eta * mean - root - near;
     const double below_tension = law.tension - mean - near;
     const double margin = below_cone < below_tension ? below_cone : below_tension;
     least = margin < least ? margin : least;

@@ -74,7 +74,7 @@ def _variants(ax: Axes, compared: Sequence[Measurement]) -> None:
     ]
     ax.bar_label(bars, labels, padding=3, fontsize="small")
     ax.invert_yaxis()
-    ax.set_xlim(0, 2.2 * max((m.median / 1e6 for m in compared), default=1.0))
+    ax.set_xlim(0, 2.4 * max((m.median / 1e6 for m in compared), default=1.0))
     ax.set(xlabel="M point-steps/s")
     if compared:
         first = compared[0]
