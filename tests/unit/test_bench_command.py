@@ -56,7 +56,9 @@ def test_bench_refuses(words: str, capsys: pytest.CaptureFixture[str]) -> None:
 def test_bench_guard(
     on_two: float, code: int, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(guard, "ratios", lambda: {1: 6.25, 2: on_two})
+    monkeypatch.setattr(
+        guard, "ratios", lambda: {1: guard.Ratio(6, 6.25), 2: guard.Ratio(6, on_two)}
+    )
     assert cli.main(["bench", "--guard"]) == code
     shown = capsys.readouterr()
     assert "6.25" in shown.out and f"{on_two:.2f}" in shown.out

@@ -31,6 +31,7 @@ class Measurement:
     median, slowest, fastest : point-steps a second
     plain : of the plain loop on one thread, point-steps a second
     ratio : how many times faster than the plain loop
+    ratio_at_best : of the fastest repeats of both, which others on the machine disturb least
     to_standard : how many times faster than the standard case of this size and number of threads;
         None where that was not measured beside it
     flops : floating-point operations counted a point-step
@@ -48,6 +49,7 @@ class Measurement:
     fastest: float
     plain: float
     ratio: float
+    ratio_at_best: float
     to_standard: float | None
     flops: float
     peak: float
@@ -92,6 +94,7 @@ def _measurement(case: Case, solver: Solver, speeds: dict[Hashable, FloatArray])
         fastest=points * float(steps.max()),
         plain=points * float(np.median(plain)),
         ratio=ratio(steps, plain),
+        ratio_at_best=float(steps.max() / plain.max()),
         to_standard=ratio(steps, speeds[case.standard]) if case.standard in speeds else None,
         flops=counted,
         peak=float(np.median(peak)),
