@@ -44,8 +44,7 @@ inline bool return_to_surface(const DruckerPrager& law, Mohr& s, double& plastic
   const double limit = law.k - law.eta * mean;
   const double root = trial < limit ? trial : limit;
 
-  constexpr double tiny =
-      1e-300;  // keeps 0 / 0 from a stress without deviator, and adds to no other
+  constexpr double tiny = 1e-300;  // keeps 0 / 0 from a stress without deviator; no other feels it
   const double scale = root / (trial + tiny);
   const bool yields = overshoot > 0.0 || trial_mean > law.tension;
   s.centre = yields ? mean + scale * common : s.centre;  // which rounding would change otherwise

@@ -32,9 +32,9 @@ void take_slabs(const View<Real>& view, int thread, Work work) {
 /// The same where work reaches nodes, with rows(begin, end) for all rows of these before any point
 /// does: an even slab reaches its own rows and those of the next one, and no other even one reaches
 /// these. An odd slab waits for the even ones beside it, so that no two that run at the same time
-/// reach the same node, and each node is reached in one order. That ends, for a thread waits only
-/// once its own even slabs, which come first in its share, are all taken: those that nobody has
-/// taken yet belong to a thread that does not wait.
+/// reach the same node, and each node is reached in one order. No wait is for ever: a thread waits
+/// only once its own even slabs, which come first in its share, are all taken, so that those nobody
+/// has taken yet belong to a thread that does not wait.
 template <class Rows, class Work, class Real>
 void for_each_slab(const View<Real>& view, int thread, Rows rows, Work work) {
   const int last = view.slab_count - 1;
