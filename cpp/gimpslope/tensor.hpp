@@ -53,6 +53,18 @@ template <class Act>
   if (k < n) act(k, n - k);
 }
 
+/// A number four times.
+[[gnu::always_inline]] inline Quad fourfold(double x) {
+#ifdef __AVX__
+  return _mm256_set1_pd(x);
+#elif __has_builtin(__builtin_shufflevector)
+  const Quad q{x};  // by way of memory otherwise, where quads do not fit into registers
+  return __builtin_shufflevector(q, q, 0, 0, 0, 0);
+#else
+  return Quad{x, x, x, x};
+#endif
+}
+
 /// {a, b, a, b} of the pair {a, b}.
 inline Quad twice(const double* pair) {
 #ifdef __AVX__

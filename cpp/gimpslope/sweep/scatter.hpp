@@ -93,8 +93,8 @@ void scatter_momentum(const View<Real>& view, int begin, int n,
   for (int k = 0; k < n; ++k) {
     nodes.move_to(weights.first[k]);
     nodes.add(
-        momenta.of(k), [&](int i) { return weights.value_x(i, k); },
-        [&](int j) { return weights.value_y(j, k); });
+        momenta.of(k), [&](int i) { return fourfold(weights.value_x(i, k)); },
+        [&](int j) { return fourfold(weights.value_y(j, k)); });
   }
 }
 

@@ -132,6 +132,15 @@ struct Weights<Shape, Need::gradients> {
 template <class Shape>
 concept ChangesAtWalls = requires { &Shape::at_walls; };
 
+/// The whole part of a number of cells.
+[[gnu::always_inline]] inline double whole(double cells) {
+#if defined(__SSE2__) && !defined(__SSE4_1__)
+  return static_cast<int>(cells);  // these processors cannot round without it
+#else
+  return std::trunc(cells);
+#endif
+}
+
 /// Shape functions of the n points from `begin` on. With kOwnDomain each point has its own
 /// half-lengths, otherwise all share one.
 template <class Shape, bool kOwnDomain, Need kNeed, class Real>
@@ -161,8 +170,8 @@ void evaluate(const View<Real>& view, int begin, int n, Weights<Shape, kNeed>& o
     }
     const double left = origin_x + 0.5 * width_x, below = origin_y + 0.5 * width_y;
     // Of the second node. Positions are scaled twice, for additions are what runs out.
-    const double column = std::trunc(px[k] * per_cell - (left - 1.0));
-    const double row = std::trunc(py[k] * per_cell - (below - 1.0));
+    const double column = whole(px[k] * per_cell - (left - 1.0));
+    const double row = whole(py[k] * per_cell - (below - 1.0));
     const double room_x = column - (px[k] * per_cell - left);
     const double room_y = row - (py[k] * per_cell - below);
     out.first[k] = static_cast<int>(row * stride + column) - (grid.stride + 1);  // exact: < 2^53
