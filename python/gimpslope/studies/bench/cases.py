@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ... import _check, _core
+from ... import _check, _core, kernel
 from ..._check import FloatArray
 from ...materials import DruckerPrager, Material
 from ...method import Method, Precision, Scheme, Shape, VolumetricStrain
@@ -21,6 +21,9 @@ SLOPE_A = 23_490
 
 STONE = DruckerPrager(density=2400, young=20e9, poisson=0.20, friction=42, cohesion=900e3)
 """The stone of the reference study."""
+
+MOST_POINTS = 100_000_000
+"""More than fit into the memory of the machines that this is for."""
 
 _MARGIN = 40  # cells that points of the plain loop may go beyond the slope
 _STONE_SPACING = 1.0  # between the centres of stones, m
@@ -43,7 +46,7 @@ class Case:
 
     Parameters
     ----------
-    points : about that many, >= 10
+    points : about that many, in [10, `MOST_POINTS`]
     threads : number of threads, >= 1
     precision, shape, scheme, volumetric_strain, ledger : as of `Method`
     stones : share of the area that is stone, in discs a metre apart, in [0, 0.7]
@@ -66,8 +69,10 @@ class Case:
     instruction_set: str = ""
 
     def __post_init__(self) -> None:
-        _check.whole("points", self.points, 10)
+        _check.in_range("points", _check.whole("points", self.points, 10), 10, MOST_POINTS)
         _check.in_range("stones", self.stones, 0.0, 0.7)
+        if self.threads != 1 and not kernel.has_threads():
+            raise ValueError(f"threads must be 1, for this build has none, got {self.threads}")
         self.method()
 
     @property

@@ -69,7 +69,8 @@ def _variants(ax: Axes, compared: Sequence[Measurement]) -> None:
     names = [_name(m) for m in compared]
     bars = ax.barh(names, [m.median / 1e6 for m in compared], color="C0")
     labels = [
-        f"{m.median / 1e6:.1f}: {m.ratio:.1f} x plain loop, {100 * m.peak_share:.0f} % of peak"
+        f"{m.median / 1e6:.1f}: {m.ratio:.1f} x plain loop"
+        + ("" if m.peak_share is None else f", {100 * m.peak_share:.0f} % of peak")
         for m in compared
     ]
     ax.bar_label(bars, labels, padding=3, fontsize="small")
@@ -85,6 +86,7 @@ def _name(m: Measurement) -> str:
     case = m.case
     changed = [
         case.shape if case.shape != case.standard.shape else "",
+        case.scheme if case.scheme != case.standard.scheme else "",
         "single precision" if case.precision == "single" else "",
         "averaged strains" if case.volumetric_strain == "cell_average" else "",
         "ledger" if case.ledger else "",

@@ -14,6 +14,9 @@ SIZES = (2_000, SLOPE_A, 94_000, 376_000)
 _VARIANTS: tuple[dict[str, object], ...] = (
     {"shape": "linear"},
     {"shape": "cpgimp"},
+    {"shape": "quadratic_bspline"},
+    {"scheme": "usl"},
+    {"scheme": "musl"},
     {"volumetric_strain": "cell_average"},
     {"ledger": True},
     {"precision": "single"},

@@ -9,7 +9,7 @@ from importlib.metadata import version
 from os import PathLike
 from pathlib import Path
 
-from . import flops, output, picture, study
+from . import output, picture, study
 from .machine import BUFFERS, MEMORY, Limits
 from .output import OutputCost
 from .results import Results
@@ -31,7 +31,7 @@ _COLUMNS = (
     "(slowest ... fastest)",
     "plain loop",
     "ratio",
-    "at best",
+    "of fastest",
     "to standard",
     "GFLOP/s",
     "of peak",
@@ -78,10 +78,10 @@ def _row(m: Measurement) -> tuple[str, ...]:
         f"({m.slowest / 1e6:.1f} ... {m.fastest / 1e6:.1f})",
         f"{m.plain / 1e6:.1f}",
         f"{m.ratio:.2f}",
-        f"{m.ratio_at_best:.2f}",
+        f"{m.ratio_of_fastest:.2f}",
         "-" if m.to_standard is None else f"{m.to_standard:.2f}",
-        f"{m.flops * m.median / 1e9:.1f}",
-        f"{100 * m.peak_share:.0f} %",
+        "-" if m.flops is None else f"{m.flops * m.median / 1e9:.1f}",
+        "-" if m.peak_share is None else f"{100 * m.peak_share:.0f} %",
         f"{m.bytes_per_point:.0f}",
     )
 
@@ -107,13 +107,13 @@ def _machine(limits: Sequence[Limits]) -> str:
 
 
 def _legend(measurements: Sequence[Measurement]) -> str:
-    shapes = dict.fromkeys(m.case.shape for m in measurements)
-    counts = ", ".join(f"{shape} {flops.per_point_step(shape):.0f}" for shape in shapes)
+    counted = {m.case.shape: m.flops for m in measurements if m.flops is not None}
+    counts = ", ".join(f"{shape} {operations:.0f}" for shape, operations in counted.items())
     return "\n".join(
         [
             "ratio: to the plain loop on one thread; to standard: to the first case of this size "
             "and number of threads; both are medians of repeats in turn",
-            "at best: ratio of the fastest repeats of both, which others on the machine disturb "
+            "of fastest: ratio of the fastest repeats of both, which others on the machine disturb "
             "least",
             f"floating-point operations counted a point-step: {counts}; of peak: share of the "
             "fused multiply-adds of as many threads, measured in turn",
@@ -154,7 +154,7 @@ def _study(time: StudyTime) -> str:
         for threads, seconds in time.slope.items()
     )
     way = (
-        f"{time.at_once} at a time with one thread each"
+        f"{time.at_once} at a time with one thread each, if side by side they are as fast as alone"
         if time.at_once > 1
         else f"one after the other with {time.cores} thread{'s' if time.cores > 1 else ''}"
     )

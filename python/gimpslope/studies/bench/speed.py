@@ -31,12 +31,12 @@ class Measurement:
     median, slowest, fastest : point-steps a second
     plain : of the plain loop on one thread, point-steps a second
     ratio : how many times faster than the plain loop
-    ratio_at_best : of the fastest repeats of both, which others on the machine disturb least
+    ratio_of_fastest : of the fastest repeats of both, which others on the machine disturb least
     to_standard : how many times faster than the standard case of this size and number of threads;
         None where that was not measured beside it
-    flops : floating-point operations counted a point-step
+    flops : floating-point operations counted a point-step; None where they are not
     peak : those that as many threads can do in fused multiply-adds, FLOP/s
-    peak_share : share of them that the kernel reaches
+    peak_share : share of them that the kernel reaches; None likewise
     bytes_per_point : memory of points and grid
     parts : shares of the time of the steps: stress, move, nodes, sort
     """
@@ -49,11 +49,11 @@ class Measurement:
     fastest: float
     plain: float
     ratio: float
-    ratio_at_best: float
+    ratio_of_fastest: float
     to_standard: float | None
-    flops: float
+    flops: float | None
     peak: float
-    peak_share: float
+    peak_share: float | None
     bytes_per_point: float
     parts: dict[str, float]
 
@@ -84,7 +84,8 @@ def _works(solvers: dict[Case, Solver]) -> dict[Hashable, Work]:
 def _measurement(case: Case, solver: Solver, speeds: dict[Hashable, FloatArray]) -> Measurement:
     points, steps, plain = len(solver), speeds[case], speeds[_plain(case)]
     peak = speeds[_peak(case)] * _machine(case).multiply_add(1)
-    counted = flops.per_point_step(case.shape)
+    known = case.shape in flops.NODES and case.scheme == "usf"
+    counted = flops.per_point_step(case.shape) if known else None
     return Measurement(
         case=case,
         points=points,
@@ -94,11 +95,11 @@ def _measurement(case: Case, solver: Solver, speeds: dict[Hashable, FloatArray])
         fastest=points * float(steps.max()),
         plain=points * float(np.median(plain)),
         ratio=ratio(steps, plain),
-        ratio_at_best=float(steps.max() / plain.max()),
+        ratio_of_fastest=float(steps.max() / plain.max()),
         to_standard=ratio(steps, speeds[case.standard]) if case.standard in speeds else None,
         flops=counted,
         peak=float(np.median(peak)),
-        peak_share=counted * points * ratio(steps, peak),
+        peak_share=None if counted is None else counted * points * ratio(steps, peak),
         bytes_per_point=solver.bytes / points,
         parts=_shares(solver.seconds),
     )
