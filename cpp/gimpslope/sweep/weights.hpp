@@ -135,7 +135,7 @@ concept ChangesAtWalls = requires { &Shape::at_walls; };
 /// The whole part of a number of cells.
 [[gnu::always_inline]] inline double whole(double cells) {
 #if defined(__SSE2__) && !defined(__SSE4_1__)
-  return static_cast<int>(cells);  // these processors cannot round without it
+  return static_cast<int>(cells);  // std::trunc is a call there, of which no loop is vectorised
 #else
   return std::trunc(cells);
 #endif

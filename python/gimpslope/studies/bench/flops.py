@@ -37,7 +37,7 @@ _ANGLE = 1 + 6 + 7  # its square, and three terms more of cosine and sine
 _TURN = 4 + 3 + 3  # centre and half of the normal stresses; the half and the shear stress turned
 _ELASTIC = 1 + 2 + 3 + 2 + 2  # tr(e), then centre, half, zz, xy
 _RETURN = 2 + 1 + 7 + 3 + 3 + 1 + 2 + 1 + 2 + 7 + 2 + 3
-# centre beyond the mean, mean, sqrt(J2), overshoot, mean after the cone, tension limit, limit of
+# deviator of the centre, mean, sqrt(J2), overshoot, mean after the cone, tension limit, limit of
 # sqrt(J2), its new value, scale; centre, zz, half, xy; the normal stresses; plastic strain
 _FORCE = 4  # V / h times xx, yy, xy
 _MOVE = 2 + 4  # x + dx; (1 - alpha) v + dv
